@@ -1,0 +1,45 @@
+# Conic's commands: `make` lists them. Each sets up what it needs, once; the pins are in pyproject.toml.
+BLENDERS := 4.2 4.5 5.0 5.2
+PYTHON := .venv/bin/python
+export MESA_SHADER_CACHE_DIR ?= $(CURDIR)/build/mesa-shader-cache
+$(shell mkdir -p $(MESA_SHADER_CACHE_DIR))
+
+help:  ## list these commands
+	@sed -n 's/^\([a-z-]*\):.*##/  make \1\t/p' $(MAKEFILE_LIST) | expand -t 18
+
+render: .venv/.ready  ## render the first picture in Blender: build/first_picture.png
+	$(PYTHON) examples/first_picture.py --output build/first_picture.png
+
+test: .venv/.ready  ## run the tests: without Blender, shaders, pictures, in Blender as a module
+	@tools/setup programs povray
+	$(PYTHON) -m pytest tests
+
+test-all: $(BLENDERS:%=test-bpy-%)  ## run the tests in Blender as a module, in each version of BLENDERS
+
+test-app: .venv/.ready  ## run the tests in the real Blender application, OpenGL and Vulkan
+	tools/run_app_tests
+
+lint: .venv/.ready  ## check the Python code's style
+	$(PYTHON) -m ruff check .
+	$(PYTHON) -m ruff format --check .
+
+zip: .venv/.ready  ## build and validate the extension: dist/conic-<version>.zip
+	$(PYTHON) tools/make_zip.py dist
+
+bench: .venv/.ready  ## measure Conic and its peers side by side
+	@tools/setup programs povray tachyon
+	$(PYTHON) -m benchmarks
+
+clean:  ## remove what was built; the environments (.venv, .venvs) stay
+	rm -rf build dist
+
+$(BLENDERS:%=test-bpy-%): test-bpy-%: .venvs/bpy-%/.ready
+	.venvs/bpy-$*/bin/python -m pytest tests/blender
+
+.venv/.ready: pyproject.toml tools/setup
+	@tools/setup default
+
+$(BLENDERS:%=.venvs/bpy-%/.ready): .venvs/bpy-%/.ready: pyproject.toml tools/setup
+	@tools/setup environment $*
+
+.PHONY: help render test test-all test-app lint zip bench clean $(BLENDERS:%=test-bpy-%)

@@ -1,0 +1,50 @@
+"""Conic's engine: exact shapes, ray-traced on the GPU. It knows nothing of Blender and needs numpy only.
+
+from addon.engine import Camera, Light, Material, Scene, render
+"""
+
+from .errors import ConicError, DeviceError, SceneError
+from .scene import (
+    Camera,
+    Cones,
+    Cylinders,
+    Discs,
+    Geometry,
+    Image,
+    Instance,
+    Light,
+    LightKind,
+    Material,
+    Planes,
+    Scene,
+    Spheres,
+    Triangles,
+    World,
+)
+from .session import Picture, Session, render
+from .settings import Settings
+
+__all__ = [
+    "Camera",
+    "Cones",
+    "ConicError",
+    "Cylinders",
+    "DeviceError",
+    "Discs",
+    "Geometry",
+    "Image",
+    "Instance",
+    "Light",
+    "LightKind",
+    "Material",
+    "Picture",
+    "Planes",
+    "Scene",
+    "SceneError",
+    "Session",
+    "Settings",
+    "Spheres",
+    "Triangles",
+    "World",
+    "render",
+]

@@ -1,0 +1,9 @@
+"""Bounding volume hierarchies over boxes with labels: build, refit, measure. No primitive is known here."""
+
+from .build import build
+from .cost import sah_cost, statistics
+from .refit import refit
+from .sweep import sweep_build
+from .tree import MAX_DEPTH, Bvh
+
+__all__ = ["MAX_DEPTH", "Bvh", "build", "refit", "sah_cost", "statistics", "sweep_build"]

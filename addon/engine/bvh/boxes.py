@@ -1,0 +1,142 @@
+"""Boxes on their way into a hierarchy: checks, outward rounding, spans and Morton codes.
+
+The builders work on *spans*: (6, n) float32 with rows -lo.x, -lo.y, -lo.z, hi.x, hi.y, hi.z, scaled by a
+power of two so that squares neither overflow nor vanish. The union of two spans is one maximum, the size is
+one sum.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+MAX_LABELS = 1 << 16
+MORTON_BITS = 21  # per axis: three of them fit in 64 bits
+OUTLIER_REACH = 512  # leaves 11 bits an axis to the middle of the scene
+
+
+def checked_boxes(lo: np.ndarray, hi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(n, 3) float32 lo and hi, rounded outward from the given (n, 3) boxes.
+
+    Raises:
+        ValueError: the shapes differ, or a box is not finite, is inverted, or does not fit in float32.
+    """
+    lo, hi = np.asarray(lo), np.asarray(hi)
+    if lo.shape != hi.shape or lo.ndim != 2 or lo.shape[1] != 3:
+        raise ValueError(f"boxes: lo and hi must both be of shape (n, 3), not {lo.shape} and {hi.shape}")
+    _refuse(~(np.isfinite(lo) & np.isfinite(hi)), lo, hi, "not finite (NaN or infinite)")
+    _refuse(lo > hi, lo, hi, "inverted (lo above hi)")
+    with np.errstate(over="ignore"):
+        low, high = _round_outward(lo, -np.inf), _round_outward(hi, np.inf)
+    _refuse(~(np.isfinite(low) & np.isfinite(high)), lo, hi, "beyond the range of float32 (3.4e38)")
+    return low, high
+
+
+def _refuse(bad: np.ndarray, lo: np.ndarray, hi: np.ndarray, what: str) -> None:
+    """Raise a ValueError that counts the boxes with a bad coordinate and shows the first."""
+    if bad.any():
+        rows = bad.any(axis=1)
+        first = int(rows.argmax())
+        raise ValueError(
+            f"boxes: {np.count_nonzero(rows)} of {len(rows)} are {what}; "
+            f"the first is primitive {first}: lo {lo[first].tolist()}, hi {hi[first].tolist()}"
+        )
+
+
+def _round_outward(values: np.ndarray, direction: float) -> np.ndarray:
+    """float32 of `values`, a step towards `direction` (±inf) where the conversion went the other way."""
+    rounded = values.astype(np.float32)
+    if values.dtype == np.float32:
+        return rounded
+    inward = rounded > values if direction < 0 else rounded < values
+    rounded[inward] = np.nextafter(rounded[inward], np.float32(direction))
+    return rounded
+
+
+def checked_labels(label: np.ndarray | None, n: int) -> np.ndarray:
+    """(n,) int32 labels, zeros if none are given.
+
+    Raises:
+        ValueError: the shape is wrong, a label is not an integer, or one is out of range.
+    """
+    if label is None:
+        return np.zeros(n, np.int32)
+    label = np.asarray(label)
+    if label.shape != (n,) or not (np.issubdtype(label.dtype, np.integer) or n == 0):
+        raise ValueError(f"labels: expected {n} integers, not shape {label.shape} of {label.dtype}")
+    bad = (label < 0) | (label >= MAX_LABELS)
+    if bad.any():
+        first = int(bad.argmax())
+        raise ValueError(
+            f"labels: primitive {first} has label {label[first]}, expected 0 to {MAX_LABELS - 1}"
+        )
+    return label.astype(np.int32)
+
+
+def spans(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
+    """(6, n) float32 scaled spans of the (n, 3) float32 boxes (n > 0)."""
+    reach = max(-float(lo.min()), float(hi.max()))
+    exponent = -int(np.frexp(reach)[1]) if reach > 0 else 0
+    # 2^exponent itself may lie beyond float32, its two factors never do.
+    first = np.float32(2.0 ** (exponent // 2))
+    second = np.float32(2.0 ** (exponent - exponent // 2))
+    span = np.empty((6, len(lo)), np.float32)
+    for axis in range(3):
+        np.multiply(lo[:, axis], -first, out=span[axis])
+        np.multiply(hi[:, axis], first, out=span[3 + axis])
+    span *= second
+    return span
+
+
+def take_spans(span: np.ndarray, index: np.ndarray) -> np.ndarray:
+    """span[:, index] of (6, n) spans, a row at a time, which is faster."""
+    out = np.empty((6, len(index)), np.float32)
+    for row in range(6):
+        np.take(span[row], index, out=out[row], mode="clip")
+    return out
+
+
+def half_areas(span: np.ndarray) -> np.ndarray:
+    """(n,) half surface areas of the (6, n) spans."""
+    x, y, z = span[:3] + span[3:]
+    return x * y + z * (x + y)
+
+
+def morton_order(span: np.ndarray) -> np.ndarray:
+    """(n,) int64: the boxes along a Z-curve through their centres, on a cubic grid of 2^21 cells a side."""
+    centre = span[3:] - span[:3]  # twice the centre, which is as good
+    low, side = _grid_cube(centre)
+    code = np.zeros(span.shape[1], np.uint64)
+    for axis in range(3):
+        cell = (centre[axis] - low[axis]) * np.float32(2**MORTON_BITS / side)
+        cell = np.clip(cell, 0, 2**MORTON_BITS - 1).astype(np.uint64)
+        code |= _spread_bits(cell) << np.uint64(axis)
+    return np.argsort(code, kind="stable")
+
+
+def _grid_cube(centre: np.ndarray) -> tuple[np.ndarray, float]:
+    """Lower corner (3,) float32 and side of a cube around the (3, n) centres, but for far outliers.
+
+    One sphere as the ground, or a stray point, must not leave the rest of the scene in a single cell: the
+    cube reaches at most `OUTLIER_REACH` times as far as the middle 98% of a sample do.
+    """
+    low, high = centre.min(axis=1), centre.max(axis=1)
+    sample = centre[:, :: max(centre.shape[1] // 16384, 1)]
+    core_low, core_high = np.quantile(sample, (0.01, 0.99), axis=1).astype(np.float32)
+    reach = (core_high - core_low).max() * np.float32(OUTLIER_REACH)
+    if reach > 0:
+        low, high = np.maximum(low, core_low - reach), np.minimum(high, core_high + reach)
+    # Coincident centres need a side too; the smallest here keeps the scale of the grid within float32.
+    return low, max(float((high - low).max()), 1e-30)
+
+
+def _spread_bits(x: np.ndarray) -> np.ndarray:
+    """uint64 with the 21 low bits of `x` three places apart: halve the group, move its upper half, repeat."""
+    for shift, mask in (
+        (32, 0x1F00000000FFFF),
+        (16, 0x1F0000FF0000FF),
+        (8, 0x100F00F00F00F00F),
+        (4, 0x10C30C30C30C30C3),
+        (2, 0x1249249249249249),
+    ):
+        x = (x | (x << np.uint64(shift))) & np.uint64(mask)
+    return x

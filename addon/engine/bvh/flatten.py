@@ -1,0 +1,141 @@
+"""From a binary tree to a `Bvh`: which subtrees become leaves, where nodes and primitives lie."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .refit import refit
+from .topology import Topology
+from .tree import MAX_DEPTH, MIXED, Bvh
+
+LEAF_SIZE = 4
+
+
+def flatten(
+    topology: Topology,
+    lo: np.ndarray,
+    hi: np.ndarray,
+    label: np.ndarray,
+    leaf_size: int,
+    traversal_cost: float,
+    intersection_cost: float,
+) -> Bvh:
+    """The `Bvh` of a complete `topology` over the (n, 3) float32 boxes with (n,) int32 labels, n > 0."""
+    topology.larger_first()
+    count, leaves, kind = _choose_leaves(topology, label, leaf_size, traversal_cost, intersection_cost)
+    start, primitives = _depth_first(topology, count)
+    order, run, rank = _runs(primitives, label)
+    child, size, kinds, depth = _lay_out(topology, leaves, kind, start, count, rank)
+    no_boxes = np.empty((0, 2, 2, 3), np.float32)
+    bvh = Bvh(no_boxes, child, size, kinds, order, run, depth)
+    return refit(bvh, lo, hi)
+
+
+def _choose_leaves(
+    topology: Topology, label: np.ndarray, leaf_size: int, traversal_cost: float, intersection_cost: float
+):
+    """Bottom up: make a leaf of every subtree of one label and `leaf_size` primitives at most, where both its
+    children are leaves and one is no dearer.
+
+    Returns, for every node of the topology, the numbers of primitives and of leaves below it (1 within a leaf
+    too), and its label or MIXED; (2n - 1,) int32 each.
+    """
+    n = topology.n
+    count, leaves = np.ones(2 * n - 1, np.int32), np.ones(2 * n - 1, np.int32)
+    kind = np.empty(2 * n - 1, np.int32)
+    kind[:n] = label
+    cost = np.empty(2 * n - 1, np.float32)
+    cost[:n] = topology.area[:n] * intersection_cost
+    for batch in topology.batches:
+        left, right = topology.left[batch], topology.right[batch]
+        node = slice(n + batch.start, n + batch.stop)
+        area = topology.area[node]
+        total = count[left] + count[right]
+        kind[node] = np.where(kind[left] == kind[right], kind[left], MIXED)
+        split = area * np.float32(traversal_cost) + cost[left] + cost[right]
+        whole = area * total * np.float32(intersection_cost)
+        below = leaves[left] + leaves[right]
+        # Both children must be leaves, so that "one leaf below" means "in a leaf" all the way down.
+        leaf = (below == 2) & (kind[node] >= 0) & (total <= leaf_size) & (whole <= split)
+        count[node], cost[node], leaves[node] = total, np.where(leaf, whole, split), np.where(leaf, 1, below)
+    return count, leaves, kind
+
+
+def _depth_first(topology: Topology, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Depth-first order: each node's first primitive, (2n - 1,) int32; the primitives, (n,) int64."""
+    n = topology.n
+    start = np.zeros(2 * n - 1, np.int32)
+    for batch in reversed(topology.batches):
+        left, right = topology.left[batch], topology.right[batch]
+        first = start[n + batch.start : n + batch.stop]
+        start[left] = first
+        start[right] = first + count[left]
+    primitives = np.empty(n, np.int64)
+    primitives[start[:n]] = np.arange(n)
+    return start, primitives
+
+
+def _runs(primitives: np.ndarray, label: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`order` and `run` of the `Bvh`; and per depth-first place the place in its label's run, (n,)."""
+    run = np.concatenate([[0], np.cumsum(np.bincount(label))]).astype(np.int64)
+    if len(run) == 2:
+        return primitives, run, np.arange(len(primitives))
+    labels = label[primitives]
+    places = np.argsort(labels.astype(np.uint16), kind="stable")
+    rank = np.empty(len(places), np.int64)
+    rank[places] = np.arange(len(places))
+    return primitives[places], run, rank - run[labels]
+
+
+def _leaf_nodes(topology: Topology, leaves: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """The nodes of the topology that become leaves, in depth-first order."""
+    n = topology.n
+    top = leaves == 1
+    within = np.flatnonzero(top[n:])
+    top[topology.left[within]] = top[topology.right[within]] = False
+    nodes = np.full(n, -1, np.int32)
+    top = np.flatnonzero(top)
+    nodes[start[top]] = top
+    return nodes[nodes >= 0]
+
+
+def _lay_out(topology: Topology, leaves, kind, start, count, rank):
+    """Top down, a level at a time: `child`, `count` and `label` of the `Bvh`, and its depth.
+
+    A subtree of c leaves has c - 1 nodes, so depth-first places are known at once. A chain that would become
+    too deep is replaced by halves: its leaves are a range in depth-first order, and neighbours there are near
+    in space.
+    """
+    leaf = _leaf_nodes(topology, leaves, start)
+    m = max(len(leaf) - 1, 1)
+    child, size = np.full((m, 2), -1, np.int64), np.zeros((m, 2), np.int32)
+    kinds = np.full((m, 2), MIXED, np.int32)
+    if len(leaf) == 1:
+        child[0, 0], size[0, 0], kinds[0, 0] = 0, topology.n, kind[leaf[0]]
+        return child, size, kinds, 1
+
+    place, first, number = np.zeros(1, np.int64), np.zeros(1, np.int64), np.array([len(leaf)])
+    node = np.array([len(leaves) - 1])
+    depth = 0
+    while len(place):
+        sides, cut = _sides(topology, leaves, node, number, depth)
+        numbers = np.stack([cut, number - cut], axis=1)
+        firsts = np.stack([first, first + cut], axis=1)
+        places = np.stack([place + 1, place + cut], axis=1)
+        ends = numbers == 1
+        at = leaf[firsts]
+        child[place] = np.where(ends, rank[start[at]], places)
+        size[place] = np.where(ends, count[at], 0)
+        kinds[place] = np.where(ends, kind[at], MIXED)
+        place, first, number, node = places[~ends], firsts[~ends], numbers[~ends], sides[~ends]
+        depth += 1
+    return child, size, kinds, depth
+
+
+def _sides(topology: Topology, leaves, node, number, depth):
+    """The nodes below each `node` (-1 where the topology is not followed), and the leaves in the first."""
+    # Halving c leaves takes ceil(log2 c) levels: the last chance to begin is when just so many are left.
+    halve = (node < 0) | (depth + np.ceil(np.log2(number)) >= MAX_DEPTH)
+    inner = np.where(halve, 0, node - topology.n)
+    sides = np.where(halve, -1, np.stack([topology.left[inner], topology.right[inner]])).T
+    return sides, np.where(halve, number // 2, leaves[sides[:, 0]])

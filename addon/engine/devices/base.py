@@ -1,0 +1,44 @@
+"""What a device does: textures, programs, drawing into float targets, reading back. It never knows what a sphere is."""
+
+from typing import Protocol
+
+#: Every program fills its rectangle with one triangle.
+FULL_SCREEN_TRIANGLE = ((-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0))
+
+
+class Device(Protocol):
+    """An adapter of a GPU context. All arrays are float32; rows of pictures run from the bottom up.
+
+    Textures, targets and programs are opaque to the caller; they live until `release` (programs: as long as the device).
+    Methods raise DeviceError with the cause.
+    """
+
+    name: str  #: renderer and driver, for people
+    max_texture_size: int  #: texels along one side
+
+    def texture(self, texels):
+        """An RGBA32F data texture from texels (height, width, 4)."""
+
+    def target(self, width, height, attachments):
+        """A frame buffer of RGBA32F attachments, cleared to zero."""
+
+    def program(self, source):
+        """A program from a `ProgramSource`; the same source gives the same program."""
+
+    def draw(self, program, target, rectangle, textures, uniforms):
+        """Add the program's outputs to the target within rectangle (x, y, width, height).
+
+        `textures`: data texture by name, at least those of the program. `uniforms`: (n,) float32, the record `Frame`.
+        """
+
+    def read(self, target, attachment, rectangle):
+        """Pixels (height, width, 4) of an attachment; waits until all drawing is done."""
+
+    def release(self, thing):
+        """Free a texture or target."""
+
+
+def describe_compile_error(source, log, line):
+    """The text of an error for a shader that a driver refuses: its log, and the lines concerned where one is known."""
+    text = f"shader {source.name} does not compile: {log.strip()}"
+    return f"{text}\n{source.listing(line)}" if line else text

@@ -1,0 +1,157 @@
+"""Blender's own GPU context, OpenGL, Vulkan or Metal. The only file that imports gpu."""
+
+import contextlib
+import os
+import re
+import sys
+import tempfile
+
+import numpy as np
+
+from ..errors import DeviceError
+from .base import FULL_SCREEN_TRIANGLE, describe_compile_error
+
+_VERTEX = "void main() { gl_Position = vec4(position, 0.0, 1.0); }"
+
+#: Programs by source. They live as long as Blender: one that is freed while bound makes later draws use it (see the manual
+#: of the gpu module: programs are told apart by their address).
+_PROGRAMS = {}
+
+
+class BlenderDevice:
+    """`Device` on the GPU context that is active: in `RenderEngine.render` and `view_draw`.
+
+    Raises DeviceError when Blender has none.
+    """
+
+    def __init__(self):
+        try:
+            import gpu
+            from gpu_extras.batch import batch_for_shader
+
+            self._gpu = gpu
+            self.max_texture_size = int(gpu.capabilities.max_texture_size_get())
+            self.name = f"{gpu.platform.renderer_get()} ({gpu.platform.backend_type_get()})"
+        except (ImportError, SystemError, RuntimeError) as error:
+            raise DeviceError(
+                f"Blender has no GPU context here ({error}). Conic draws with OpenGL, Vulkan or Metal; on a machine without "
+                "a GPU install Mesa's software drivers (Debian, Ubuntu: libegl1 and libgl1-mesa-dri)"
+            ) from error
+        self._batch_for_shader = batch_for_shader
+
+    def _buffer(self, array):
+        # One-dimensional and float32: others are read wrongly by one version of Blender or another.
+        flat = np.ascontiguousarray(array, np.float32).reshape(-1)
+        return self._gpu.types.Buffer("FLOAT", flat.size, flat)
+
+    def texture(self, texels):
+        height, width, _ = texels.shape
+        try:
+            return self._gpu.types.GPUTexture((width, height), format="RGBA32F", data=self._buffer(texels))
+        except (RuntimeError, ValueError, MemoryError) as error:
+            raise DeviceError(f"no memory for a texture of {width} x {height}: {error}") from error
+
+    def target(self, width, height, attachments):
+        try:
+            colors = [
+                self._gpu.types.GPUTexture((width, height), format="RGBA32F") for _ in range(attachments)
+            ]
+        except (RuntimeError, ValueError, MemoryError) as error:
+            raise DeviceError(f"no memory for a picture of {width} x {height}: {error}") from error
+        for color in colors:
+            color.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
+        return _Target(self._gpu.types.GPUFrameBuffer(color_slots=colors), colors)
+
+    def program(self, source):
+        if source not in _PROGRAMS:
+            info = self._create_info(source)
+            try:
+                with _captured_output() as captured:
+                    shader = self._gpu.shader.create_from_info(info)
+            except Exception as error:  # gpu raises a bare Exception; the driver's log goes to the console
+                log = captured.text or str(error)
+                number = re.search(r":(\d+):\d+", log)
+                line = int(number.group(1)) if number else 0
+                raise DeviceError(describe_compile_error(source, log, line)) from error
+            batch = self._batch_for_shader(shader, "TRIS", {"position": FULL_SCREEN_TRIANGLE})
+            _PROGRAMS[source] = (source, shader, batch)
+        return _PROGRAMS[source]
+
+    def _create_info(self, source):
+        info = self._gpu.types.GPUShaderCreateInfo()
+        info.vertex_in(0, "VEC2", "position")
+        if source.uniform_struct:
+            info.typedef_source(source.uniform_struct)
+            info.uniform_buf(0, "Frame", "frame")
+        for unit, name in enumerate(source.textures):
+            info.sampler(unit, "FLOAT_2D", f"{name}_data")
+        for location, name in enumerate(source.outputs):
+            info.fragment_out(location, "VEC4", name)
+        info.vertex_source(_VERTEX)
+        info.fragment_source(source.fragment)
+        return info
+
+    def draw(self, program, target, rectangle, textures, uniforms):
+        source, shader, batch = program
+        state = self._gpu.state
+        block = self._gpu.types.GPUUniformBuf(self._buffer(uniforms))
+        with target.framebuffer.bind():
+            state.scissor_test_set(True)
+            state.scissor_set(*rectangle)
+            state.blend_set("ADDITIVE_PREMULT")
+            try:
+                shader.bind()
+                if source.uniform_struct:
+                    shader.uniform_block("frame", block)
+                for name in source.textures:
+                    shader.uniform_sampler(f"{name}_data", textures[name])
+                batch.draw(shader)
+            finally:
+                state.blend_set("NONE")
+                state.scissor_test_set(False)
+        target.keep = (
+            block,
+            textures,
+        )  # until the next draw has replaced them: the GPU may not have read them yet
+
+    def read(self, target, attachment, rectangle):
+        x, y, width, height = rectangle
+        pixels = np.empty(width * height * 4, np.float32)
+        buffer = self._gpu.types.Buffer("FLOAT", pixels.size, pixels)
+        with target.framebuffer.bind():
+            target.framebuffer.read_color(x, y, width, height, 4, attachment, "FLOAT", data=buffer)
+        return pixels.reshape(height, width, 4)
+
+    def release(self, thing):
+        """Textures are Blender's: freed when the last reference goes."""
+
+
+class _Target:
+    """A frame buffer, its attachments, and what the last draw still reads."""
+
+    def __init__(self, framebuffer, colors):
+        self.framebuffer, self.colors, self.keep = framebuffer, colors, ()
+
+
+class _Captured:
+    text = ""
+
+
+@contextlib.contextmanager
+def _captured_output():
+    """Catch what C code prints meanwhile: the only way to a driver's log."""
+    captured = _Captured()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    saved = [(fd, os.dup(fd)) for fd in (1, 2)]
+    with tempfile.TemporaryFile() as file:
+        for fd, _ in saved:
+            os.dup2(file.fileno(), fd)
+        try:
+            yield captured
+        finally:
+            for fd, copy in saved:
+                os.dup2(copy, fd)
+                os.close(copy)
+            file.seek(0)
+            captured.text = file.read().decode(errors="replace")

@@ -1,0 +1,120 @@
+"""A context without a window through moderngl: tests, command line and library use. The only file that imports moderngl."""
+
+import re
+
+import numpy as np
+
+from ..errors import DeviceError
+from .base import FULL_SCREEN_TRIANGLE, describe_compile_error
+
+_VERTEX = """#version 330
+in vec2 position;
+void main() { gl_Position = vec4(position, 0.0, 1.0); }
+"""
+
+_NO_DRIVER = """no OpenGL driver for drawing without a window was found ({cause}).
+Install one: on Debian and Ubuntu 'apt-get install libegl1 libgl1-mesa-dri' (Mesa, works without a GPU),
+on Fedora 'dnf install mesa-libEGL mesa-dri-drivers', or the EGL libraries of your GPU's driver."""
+
+
+def _context():
+    try:
+        import moderngl
+    except ImportError as error:
+        raise DeviceError(
+            "drawing without Blender needs the Python package moderngl: pip install moderngl"
+        ) from error
+    causes = []
+    for options in ({"backend": "egl"}, {}):
+        try:
+            return moderngl.create_context(standalone=True, require=330, **options)
+        except (
+            Exception
+        ) as error:  # moderngl and glcontext raise bare Exception for a missing library or display
+            causes.append(str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__)
+    raise DeviceError(_NO_DRIVER.format(cause="; ".join(dict.fromkeys(causes))))
+
+
+class HeadlessDevice:
+    """`Device` on an OpenGL 3.3 context of its own. Raises DeviceError when there is no driver."""
+
+    def __init__(self):
+        self._context = _context()
+        info = self._context.info
+        self.name = f"{info['GL_RENDERER']} (OpenGL {info['GL_VERSION']})"
+        self.max_texture_size = int(info["GL_MAX_TEXTURE_SIZE"])
+        self._programs = {}
+        self._triangle = self._context.buffer(np.array(FULL_SCREEN_TRIANGLE, np.float32).tobytes())
+        self._uniforms = None
+
+    def texture(self, texels):
+        height, width, _ = texels.shape
+        try:
+            texture = self._context.texture(
+                (width, height), 4, np.ascontiguousarray(texels, np.float32), dtype="f4"
+            )
+        except Exception as error:
+            raise DeviceError(f"no memory for a texture of {width} x {height}: {error}") from error
+        texture.filter = (self._context.NEAREST, self._context.NEAREST)
+        return texture
+
+    def target(self, width, height, attachments):
+        try:
+            colors = [self._context.texture((width, height), 4, dtype="f4") for _ in range(attachments)]
+            target = self._context.framebuffer(colors)
+        except Exception as error:
+            raise DeviceError(f"no memory for a picture of {width} x {height}: {error}") from error
+        target.clear()
+        return target
+
+    def program(self, source):
+        if source not in self._programs:
+            fragment = self._declarations(source) + source.fragment
+            try:
+                program = self._context.program(vertex_shader=_VERTEX, fragment_shader=fragment)
+            except Exception as error:  # moderngl.Error, whose text holds the driver's log
+                number = re.search(r"\b0[:(](\d+)", str(error))
+                line = int(number.group(1)) if number else 0
+                raise DeviceError(describe_compile_error(source, str(error), line)) from error
+            for unit, name in enumerate(source.textures):
+                if f"{name}_data" in program:
+                    program[f"{name}_data"] = unit
+            vertices = self._context.vertex_array(program, [(self._triangle, "2f", "position")])
+            self._programs[source] = (source, vertices)
+        return self._programs[source]
+
+    @staticmethod
+    def _declarations(source):
+        samplers = "".join(f"uniform sampler2D {name}_data;\n" for name in source.textures)
+        outputs = "".join(
+            f"layout(location = {i}) out vec4 {name};\n" for i, name in enumerate(source.outputs)
+        )
+        block = f"{source.uniform_struct}layout(std140) uniform frame_block {{ Frame frame; }};\n"
+        return f"#version 330\n{block if source.uniform_struct else ''}{samplers}{outputs}#line 1\n"
+
+    def draw(self, program, target, rectangle, textures, uniforms):
+        source, vertices = program
+        gl = self._context
+        uniforms = np.ascontiguousarray(uniforms, np.float32)
+        if self._uniforms is None or self._uniforms.size != uniforms.nbytes:
+            self._uniforms = gl.buffer(reserve=uniforms.nbytes)
+        self._uniforms.write(uniforms.tobytes())
+        self._uniforms.bind_to_uniform_block(0)
+        for unit, name in enumerate(source.textures):
+            textures[name].use(unit)
+        target.use()
+        target.scissor = rectangle
+        gl.enable_only(gl.BLEND)
+        gl.blend_func = gl.ONE, gl.ONE
+        vertices.render(gl.TRIANGLES)
+        target.scissor = None
+
+    def read(self, target, attachment, rectangle):
+        x, y, width, height = rectangle
+        data = target.read((x, y, width, height), 4, attachment=attachment, dtype="f4", alignment=1)
+        return np.frombuffer(data, np.float32).reshape(height, width, 4)
+
+    def release(self, thing):
+        for attachment in getattr(thing, "color_attachments", ()):
+            attachment.release()
+        thing.release()

@@ -1,0 +1,116 @@
+"""The picture while it forms: samples, tiles, accumulation. A film is a rectangle of float pixels on a device."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+#: What one draw may take before a driver or a waiting user loses patience, in seconds.
+TILE_SECONDS = 0.04
+_FIRST_TILE_PIXELS = 4096
+_BAND_ROWS = 8
+
+
+@dataclass(frozen=True)
+class Tile:
+    """A rectangle (x, y, width, height) of the film and the sample that is drawn in it."""
+
+    rectangle: tuple
+    sample: int
+
+
+def sample_offset(sample):
+    """Where in its pixel a sample lies, (2,) in [0, 1): the first in the centre, the others evenly around it.
+
+    The R2 sequence (Roberts 2018, The Unreasonable Effectiveness of Quasirandom Sequences).
+    """
+    plastic = 1.32471795724474602596
+    return np.mod(0.5 + sample * np.array([1.0 / plastic, 1.0 / plastic**2]), 1.0)
+
+
+class Film:
+    """Pixels being summed up sample by sample, tile by tile.
+
+    `width`, `height`: of the whole frame; `border` (x, y, width, height): the part that is rendered. With `corner_rays` the
+    film has a row and a column more, and a pixel is the mean of its four corners.
+    """
+
+    def __init__(self, device, width, height, *, border=None, samples=1, corner_rays=False, attachments=1):
+        self.frame_size = (width, height)
+        self.border = border or (0, 0, width, height)
+        self.samples, self.corner_rays = samples, corner_rays
+        self.width, self.height = self.border[2] + corner_rays, self.border[3] + corner_rays
+        self._device = device
+        self.target = device.target(self.width, self.height, attachments)
+        self._sample = self._x = self._y = 0
+        self._pixels_per_tile = _FIRST_TILE_PIXELS
+        self._band = self._band_rows()
+
+    @property
+    def finished(self):
+        return self._sample >= self.samples
+
+    @property
+    def progress(self):
+        """Share of the work that is done, 0 to 1."""
+        rows = self._y + self._band * self._x / self.width
+        return min((self._sample + rows / self.height) / self.samples, 1.0)
+
+    @property
+    def sample(self):
+        return min(self._sample, self.samples - 1)
+
+    def next_tile(self):
+        """The tile to draw now; `advance` says that it was drawn."""
+        width = self.width - self._x
+        if self._pixels_per_tile < self.width * self._band:
+            width = min(width, max(16, self._pixels_per_tile // self._band))
+        return Tile((self._x, self._y, width, self._band), self._sample)
+
+    def advance(self, tile, seconds):
+        """A tile was drawn in `seconds`: go on to the next, of a size that takes about TILE_SECONDS."""
+        pixels = tile.rectangle[2] * tile.rectangle[3]
+        wanted = pixels * TILE_SECONDS / max(seconds, 1e-6)
+        self._pixels_per_tile = (
+            int(np.clip(wanted, self._pixels_per_tile / 4, self._pixels_per_tile * 4)) or 1
+        )
+        self._x += tile.rectangle[2]
+        if self._x >= self.width:
+            self._x, self._y = 0, self._y + self._band
+            if self._y >= self.height:
+                self._y, self._sample = 0, self._sample + 1
+            self._band = self._band_rows()
+
+    def _band_rows(self):
+        rows = max(self._pixels_per_tile // self.width, _BAND_ROWS)
+        return int(min(rows, self.height - self._y))
+
+    def raster(self, sample, window):
+        """Scale and offset (4,) from gl_FragCoord in the film to the camera's window (left, right, bottom, top)."""
+        left, right, bottom, top = window
+        scale = np.array([right - left, top - bottom]) / self.frame_size
+        inside = np.zeros(2) if self.corner_rays else sample_offset(sample)
+        offset = np.array([left, bottom]) + (np.array(self.border[:2]) + inside - 0.5) * scale
+        return np.concatenate([scale, offset])
+
+    def pixels(self):
+        """What is there so far, (height, width, 4) float32 of the border, bottom row first, premultiplied alpha.
+
+        Pixels that no sample has reached yet are 0.
+        """
+        total = self._device.read(self.target, 0, (0, 0, self.width, self.height))
+        counts = np.full((self.height, self.width, 1), self._sample, np.float32)
+        if not self.finished:
+            counts[: self._y] += 1.0
+            counts[self._y : self._y + self._band, : self._x] += 1.0
+        mean = total / np.maximum(counts, 1.0)
+        if self.corner_rays:
+            mean = (mean[:-1, :-1] + mean[1:, :-1] + mean[:-1, 1:] + mean[1:, 1:]) / 4.0
+        return mean
+
+    def counters(self, attachment):
+        """Sums over all pixels and samples of an attachment that counts, (4,) float64."""
+        values = self._device.read(self.target, attachment, (0, 0, self.width, self.height))
+        return values.sum(axis=(0, 1), dtype=np.float64)
+
+    def release(self):
+        self._device.release(self.target)

@@ -1,0 +1,362 @@
+"""The one table of GPU records: numpy dtype, GLSL struct and GLSL reader are all made from it.
+
+A record is a sequence of fields that fill whole RGBA32F texels; no field straddles two texels. Records lie one after the
+other in a data texture of fixed width, several small record types may share one texture, each from a first texel of its own.
+The same description gives the uniform block `Frame`, whose std140 layout is the same sequence of four-float groups.
+
+Integers are stored as float values, which is exact below 2^24 and survives every driver (bit patterns may not). An index that
+may grow past that is stored in two fields, see `split_index`.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+#: Texels per row of every data texture: a power of two, so that an address needs a mask and a shift only.
+DATA_WIDTH_BITS = 12
+DATA_WIDTH = 1 << DATA_WIDTH_BITS
+
+_COMPONENTS = {"float": 1, "int": 1, "vec2": 2, "vec3": 3, "vec4": 4}
+_SWIZZLE = "xyzw"
+
+
+@dataclass(frozen=True)
+class Field:
+    """One member of a record: its name, its GLSL type (float, int, vec2, vec3, vec4) and what it means."""
+
+    name: str
+    type: str
+    meaning: str
+
+    @property
+    def size(self):
+        """Number of floats it takes."""
+        return _COMPONENTS[self.type]
+
+
+@dataclass(frozen=True)
+class Record:
+    """A GPU record: `name` in snake_case, the data texture it lies in, its fields in order."""
+
+    name: str
+    texture: str
+    fields: tuple[Field, ...]
+
+    def __post_init__(self):
+        used = 0
+        for field in self.fields:
+            if used % 4 + field.size > 4:
+                raise ValueError(f"record {self.name}: field {field.name} straddles two texels")
+            used += field.size
+        if used % 4:
+            raise ValueError(f"record {self.name}: its fields do not fill whole texels")
+
+    @property
+    def texels(self):
+        """Number of RGBA32F texels of one record."""
+        return sum(field.size for field in self.fields) // 4
+
+    @property
+    def dtype(self):
+        """The numpy dtype of one record; all members are float32."""
+        return np.dtype(
+            [(f.name, np.float32) if f.size == 1 else (f.name, np.float32, (f.size,)) for f in self.fields]
+        )
+
+    @property
+    def struct_name(self):
+        return "".join(part.capitalize() for part in self.name.split("_"))
+
+    def zeros(self, count):
+        """An array (count,) of this record, all zero."""
+        return np.zeros(count, self.dtype)
+
+
+def _record(name, texture, *fields):
+    return Record(name, texture, tuple(Field(*field) for field in fields))
+
+
+NODE = _record(
+    "node",
+    "nodes",
+    ("lower_0", "vec3", "lower corner of the first child's box"),
+    ("first_0", "int", "index of the first child: low part"),
+    ("upper_0", "vec3", "upper corner of the first child's box"),
+    ("leaf_0", "int", "kind, number of primitives (0: inner node) and high part of the index"),
+    ("lower_1", "vec3", "the same of the second child"),
+    ("first_1", "int", ""),
+    ("upper_1", "vec3", ""),
+    ("leaf_1", "int", ""),
+)
+INSTANCE = _record(
+    "instance",
+    "instances",
+    ("to_object_x", "vec4", "first row of the 3x4 matrix from world to object space"),
+    ("to_object_y", "vec4", "second row"),
+    ("to_object_z", "vec4", "third row"),
+    ("root", "int", "index of the geometry's root node: low part"),
+    ("root_high", "int", "high part"),
+    ("first_material", "int", "index of the material record of the geometry's material slot 0"),
+    ("unused", "float", ""),
+)
+INSTANCE_SURFACE = _record(
+    "instance_surface",
+    "instances",
+    ("to_world_x", "vec4", "first row of the 3x4 matrix from object to world space"),
+    ("to_world_y", "vec4", "second row"),
+    ("to_world_z", "vec4", "third row"),
+)
+# Each primitive has two records: what its intersection needs, and what only the nearest hit needs.
+SPHERE = _record(
+    "sphere",
+    "spheres",
+    ("center", "vec3", "centre"),
+    ("radius", "float", "radius; negative: only the inside is seen"),
+)
+SPHERE_SURFACE = _record(
+    "sphere_surface",
+    "sphere_surfaces",
+    ("rotation", "vec3", "frame of the pole and zero meridian, modified Rodrigues parameters"),
+    ("material", "int", "material slot"),
+)
+CYLINDER = _record(
+    "cylinder",
+    "cylinders",
+    ("base", "vec3", "centre of the base"),
+    ("radius", "float", "radius; negative: only the inside is seen"),
+    ("axis", "vec3", "from the base centre to the top centre"),
+    ("unused", "float", ""),
+)
+CYLINDER_SURFACE = _record(
+    "cylinder_surface",
+    "cylinder_surfaces",
+    ("meridian", "vec3", "unit vector of u = 0, perpendicular to the axis"),
+    ("material", "int", "material slot"),
+    ("uv_transform", "vec4", "scale and offset applied to the paper's uv"),
+)
+CONE = _record(
+    "cone",
+    "cones",
+    ("base", "vec3", "centre of the base"),
+    ("base_radius", "float", "radius at the base; negative (with the other): only the inside is seen"),
+    ("axis", "vec3", "from the base centre to the apex centre"),
+    ("apex_radius", "float", "radius at the apex"),
+)
+CONE_SURFACE = _record(
+    "cone_surface",
+    "cone_surfaces",
+    ("meridian", "vec3", "unit vector of u = 0, perpendicular to the axis"),
+    ("material", "int", "material slot"),
+    ("uv_transform", "vec4", "scale and offset applied to the uv"),
+    ("planar", "float", "1: uv is the projection along the axis, as on a disc; 0: the paper's"),
+    ("unused", "vec3", ""),
+)
+DISC = _record(
+    "disc",
+    "discs",
+    ("center", "vec3", "centre"),
+    ("radius", "float", "radius"),
+    ("normal", "vec3", "unit normal"),
+    ("unused", "float", ""),
+)
+DISC_SURFACE = _record(
+    "disc_surface",
+    "disc_surfaces",
+    ("meridian", "vec3", "unit vector of growing u, perpendicular to the normal"),
+    ("material", "int", "material slot"),
+    ("uv_transform", "vec4", "scale and offset applied to the paper's uv"),
+)
+TRIANGLE = _record(
+    "triangle",
+    "triangles",
+    ("p0", "vec3", "first vertex"),
+    ("one_sided", "float", "1: seen only from where the vertices run counter-clockwise"),
+    ("p1", "vec3", "second vertex"),
+    ("unused_1", "float", ""),
+    ("p2", "vec3", "third vertex"),
+    ("unused_2", "float", ""),
+)
+TRIANGLE_SURFACE = _record(
+    "triangle_surface",
+    "triangle_surfaces",
+    ("n0", "vec3", "normal at the first vertex; all three zero: flat"),
+    ("material", "int", "material slot"),
+    ("n1", "vec3", "normal at the second vertex"),
+    ("u0", "float", "uv of the three vertices"),
+    ("n2", "vec3", "normal at the third vertex"),
+    ("v0", "float", ""),
+    ("uv1", "vec2", ""),
+    ("uv2", "vec2", ""),
+)
+PLANE = _record(
+    "plane",
+    "tables",
+    ("normal", "vec3", "unit normal"),
+    ("offset", "float", "W of the plane's equation normal . p + W = 0"),
+)
+PLANE_SURFACE = _record(
+    "plane_surface",
+    "tables",
+    ("meridian", "vec3", "unit vector of growing u, perpendicular to the normal"),
+    ("material", "int", "material"),
+    ("origin", "vec3", "where u = v = 0"),
+    ("unused", "float", ""),
+)
+MATERIAL = _record(
+    "material",
+    "tables",
+    ("diffuse", "vec3", "d: share of a light's irradiance / pi that is returned"),
+    ("diffuse_image", "int", "image that multiplies it, -1: none"),
+    ("reflect", "vec3", "r: weight of the mirror ray"),
+    ("reflect_image", "int", ""),
+    ("transmit", "vec3", "t: weight of the refracted ray"),
+    ("transmit_image", "int", ""),
+    ("glow", "vec3", "g: radiance given off"),
+    ("glow_image", "int", ""),
+    ("absorption", "vec3", "Beer-Lambert coefficient inside the body, 1 / length"),
+    ("ior", "float", "n0: index of refraction of the inside"),
+    ("highlight", "vec3", "weight of the lights' Phong highlight"),
+    ("shine", "float", "Phong exponent of the highlight"),
+    ("fresnel", "float", "1: mirror and transmission shares follow Fresnel; 0: constant shares"),
+    ("unused", "vec3", ""),
+)
+LIGHT = _record(
+    "light",
+    "tables",
+    ("position", "vec3", "position; for a sun the unit direction towards it"),
+    ("kind", "int", "LIGHT_POINT, LIGHT_CONSTANT or LIGHT_SUN"),
+    ("color", "vec3", "radiance of a white diffuse surface facing it, at distance 1 where it falls off"),
+    ("unused", "float", ""),
+)
+IMAGE = _record(
+    "image",
+    "tables",
+    ("first", "int", "first texel in the image texture: low part"),
+    ("first_high", "int", "high part"),
+    ("width", "int", "width in texels"),
+    ("height", "int", "height in texels"),
+    ("interpolation", "int", "0: nearest texel, 1: bilinear"),
+    ("extension", "int", "0: repeat, 1: extend the edge, 2: black and transparent outside"),
+    ("unused", "vec2", ""),
+)
+#: The uniform block: what changes from draw to draw. Lengths are relative to `Scene.origin`.
+FRAME = _record(
+    "frame",
+    "",
+    ("camera_origin", "vec3", "eye, or centre of the window for an orthographic camera"),
+    ("orthographic", "float", "1: parallel rays"),
+    ("camera_right", "vec3", "unit vector to the right"),
+    ("clip_start", "float", "distance of the near plane along the view"),
+    ("camera_up", "vec3", "unit vector upwards"),
+    ("clip_end", "float", "distance of the far plane along the view"),
+    ("camera_forward", "vec3", "unit vector along the view"),
+    ("light_count", "float", ""),
+    ("raster", "vec4", "scale and offset from gl_FragCoord to the window at unit distance"),
+    ("world_color", "vec3", "radiance of the sky, multiplies the image"),
+    ("world_image", "float", "equirectangular image, -1: none"),
+    ("max_depth", "float", "the eye ray has depth 1"),
+    ("weight_cutoff", "float", "rays of smaller weight are not followed"),
+    ("film_transparent", "float", "1: the sky leaves alpha 0"),
+    ("plane_count", "float", ""),
+    ("material_first", "float", "first texels of the records that share a texture"),
+    ("light_first", "float", ""),
+    ("plane_first", "float", ""),
+    ("plane_surface_first", "float", ""),
+    ("image_first", "float", ""),
+    ("instance_first", "float", ""),
+    ("instance_surface_first", "float", ""),
+    ("root_count", "float", "0: nothing but planes"),
+)
+
+RECORDS = (
+    NODE,
+    INSTANCE,
+    INSTANCE_SURFACE,
+    SPHERE,
+    SPHERE_SURFACE,
+    CYLINDER,
+    CYLINDER_SURFACE,
+    CONE,
+    CONE_SURFACE,
+    DISC,
+    DISC_SURFACE,
+    TRIANGLE,
+    TRIANGLE_SURFACE,
+    PLANE,
+    PLANE_SURFACE,
+    MATERIAL,
+    LIGHT,
+    IMAGE,
+)
+
+#: Numbers of the kinds of leaves; they are also the labels of the tree's leaves.
+KINDS = ("sphere", "cylinder", "cone", "disc", "triangle", "instance")
+
+_KIND_BITS = 3
+_COUNT_BITS = 5
+MAX_LEAF_SIZE = (1 << _COUNT_BITS) - 1
+_LOW_BITS = 24
+
+
+def split_index(index):
+    """Split non-negative integers below 2^40 into two parts below 2^24 that float32 holds exactly: (low, high)."""
+    index = np.asarray(index, np.int64)
+    return index & ((1 << _LOW_BITS) - 1), index >> _LOW_BITS
+
+
+def pack_leaf(kind, count, index_high):
+    """The `leaf` field of a node: kind, number of primitives and the high part of the index (below 2^16) in one number."""
+    return kind + (np.asarray(count) << _KIND_BITS) + (np.asarray(index_high) << (_KIND_BITS + _COUNT_BITS))
+
+
+def shared(record):
+    """Whether other records lie in the same texture, so that this one starts at `frame.<record>_first`."""
+    return sum(other.texture == record.texture for other in RECORDS) > 1
+
+
+def glsl_struct(record):
+    """GLSL struct of a record."""
+    members = "".join(f"  {field.type} {field.name};\n" for field in record.fields)
+    return f"struct {record.struct_name} {{\n{members}}};\n"
+
+
+def glsl_reader(record):
+    """GLSL struct of a record and `read_<record>(index)`, which fetches it from its data texture."""
+    values, offset = [], 0
+    for field in record.fields:
+        texel, first = divmod(offset, 4)
+        value = f"t{texel}.{_SWIZZLE[first : first + field.size]}"
+        values.append(f"int({value})" if field.type == "int" else value)
+        offset += field.size
+    base = f"int(frame.{record.name}_first) + " if shared(record) else ""
+    fetches = "".join(f"  vec4 t{k} = fetch_{record.texture}(texel + {k});\n" for k in range(record.texels))
+    return (
+        f"{glsl_struct(record)}"
+        f"{record.struct_name} read_{record.name}(int index) {{\n"
+        f"  int texel = {base}index * {record.texels};\n"
+        f"{fetches}"
+        f"  return {record.struct_name}({', '.join(values)});\n"
+        f"}}\n"
+    )
+
+
+def glsl_fetch(texture):
+    """GLSL function `fetch_<texture>(texel)` over the sampler `<texture>_data`."""
+    return (
+        f"vec4 fetch_{texture}(int texel) {{\n"
+        f"  return texelFetch({texture}_data, ivec2(texel & {DATA_WIDTH - 1}, texel >> {DATA_WIDTH_BITS}), 0);\n"
+        f"}}\n"
+    )
+
+
+def glsl_constants():
+    """GLSL defines that go with the packing of nodes and indices."""
+    kinds = "".join(f"#define KIND_{kind.upper()} {number}\n" for number, kind in enumerate(KINDS))
+    return (
+        f"{kinds}"
+        f"#define LEAF_KIND(leaf) ((leaf) & {(1 << _KIND_BITS) - 1})\n"
+        f"#define LEAF_COUNT(leaf) (((leaf) >> {_KIND_BITS}) & {MAX_LEAF_SIZE})\n"
+        f"#define LEAF_HIGH(leaf) ((leaf) >> {_KIND_BITS + _COUNT_BITS})\n"
+        f"#define LEAF_INNER(high) ((high) << {_KIND_BITS + _COUNT_BITS})\n"
+        f"#define JOIN_INDEX(low, high) ((low) + ((high) << {_LOW_BITS}))\n"
+    )

@@ -1,0 +1,443 @@
+"""From a `Scene` to the arrays that go to the GPU: trees, records in data textures, and where each kind of record begins.
+
+Nothing here draws. Lengths become relative to an origin near the camera, so that float32 keeps its digits where people look.
+"""
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import bvh, layout
+from .errors import SceneError
+from .primitives import BY_KIND, Planes, Similarity
+from .scene import EXTENSIONS, INTERPOLATIONS, Geometry, LightKind, Material
+
+_INSTANCE = layout.KINDS.index("instance")
+
+#: How much larger boxes are stored than they are, relative to their coordinates: covers the rounding of the slab test.
+_BOX_PADDING = 2.0**-22
+_BOX_PADDING_ABSOLUTE = 1e-20
+
+
+@dataclass
+class PackedScene:
+    """What a session uploads. `textures`: float32 (height, width, 4) by name. `frame`: values of the `Frame` record that
+    depend on the scene alone. `features` and `constants`: of the shader. `origin` (3,): what positions are relative to."""
+
+    origin: np.ndarray
+    textures: dict
+    frame: dict
+    features: frozenset
+    constants: dict
+    statistics: dict
+    warnings: list = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class _Tree:
+    """A geometry's tree and its primitives' records in the order of the leaves, by label."""
+
+    tree: bvh.Bvh
+    records: dict
+    slots: int  # one more than the largest material slot used
+
+
+def pack(scene, max_texture_size):
+    """Pack a scene for a device whose textures are at most `max_texture_size` wide and high.
+
+    Raises SceneError when the scene has no camera, refers to what does not exist, or does not fit.
+    """
+    if scene.camera is None:
+        raise SceneError("the scene has no camera; add one")
+    started = time.perf_counter()
+    origin = scene_origin(scene)
+    geometries = _distinct_geometries(scene)
+    trees = [_build_tree(geometry, origin if geometry is scene.shapes else None) for geometry in geometries]
+    built = time.perf_counter() - started
+    packer = _Packer(scene, origin, geometries, trees, max_texture_size)
+    packed = packer.pack()
+    packed.statistics["seconds"] = {"build": built}
+    return packed
+
+
+def scene_origin(scene):
+    """The point (3,) that positions are taken relative to: the camera's, rounded to a grid much coarser than the scene, so
+    that it is exactly 0 for scenes around 0 and stays put while the camera moves."""
+    eye = np.asarray(scene.camera.matrix, np.float64)[:3, 3]
+    corners = [eye]
+    for _, part in scene.shapes.kinds():
+        lower, upper = part.bounds()
+        corners += [lower.min(axis=0), upper.max(axis=0)]
+    corners += [np.asarray(instance.matrix, np.float64)[:3, 3] for instance in scene.instances[:1000]]
+    extent = float(np.ptp(np.stack(corners), axis=0).max())
+    grid = 2.0 ** (np.ceil(np.log2(max(extent, 1e-30))) + 2.0)
+    return np.round(eye / grid) * grid
+
+
+def _distinct_geometries(scene):
+    """The world's shapes first (if any), then each instanced geometry once; those without primitives are left out."""
+    geometries = [scene.shapes] if len(scene.shapes) else []
+    seen = {id(geometry) for geometry in geometries}
+    for instance in scene.instances:
+        if id(instance.geometry) not in seen and len(instance.geometry):
+            seen.add(id(instance.geometry))
+            geometries.append(instance.geometry)
+    return geometries
+
+
+def _build_tree(geometry, origin):
+    """The tree of a geometry; `origin` is subtracted first where its space is the world's."""
+    parts = dict(geometry.kinds())
+    if origin is not None and origin.any():
+        move = Similarity(np.eye(3), 1.0, -origin)
+        parts = {label: part.transformed(move) for label, part in parts.items()}
+    boxes = [part.bounds() for part in parts.values()]
+    lower = np.concatenate([lower for lower, _ in boxes])
+    upper = np.concatenate([upper for _, upper in boxes])
+    labels = np.repeat(list(parts), [len(part) for part in parts.values()])
+    try:
+        tree = bvh.build(lower, upper, labels)
+    except ValueError as error:
+        raise SceneError(f"geometry {geometry.name!r}: {error}") from error
+    records, start = {}, 0
+    for label, part in parts.items():
+        rows = tree.order[tree.run[label] : tree.run[label + 1]] - start
+        records[label] = part.take(rows).records()
+        start += len(part)
+    return _Tree(tree, records, 1 + max(int(part.material.max()) for part in parts.values()))
+
+
+class _Packer:
+    """State while a scene is packed: what each geometry's nodes and records begin at."""
+
+    def __init__(self, scene, origin, geometries, trees, max_texture_size):
+        self.scene, self.origin, self.trees = scene, origin, trees
+        self.index = {id(geometry): i for i, geometry in enumerate(geometries)}
+        self.limit = layout.DATA_WIDTH * max_texture_size
+        self.texels, self.frame, self.warnings = {}, {}, []
+        self.world_only = not scene.instances
+        self.materials = list(scene.materials) or [Material()]
+        self._blocks = {}
+
+    def pack(self):
+        instances, top = self._instances()
+        self._nodes(top)
+        self._primitives()
+        if not self.world_only:
+            self._records("instances", instance=instances[0], instance_surface=instances[1])
+        planes = self._planes()
+        images = self._images()
+        self._records(
+            "tables",
+            material=self._materials(),
+            light=self._lights(),
+            plane=planes[0],
+            plane_surface=planes[1],
+            image=images,
+        )
+        self.frame |= {
+            "light_count": len(self.scene.lights),
+            "plane_count": len(planes[0]),
+            "root_count": len(self.trees),
+            "world_color": self.scene.world.color,
+            "world_image": self._checked_image(self.scene.world.image, "the world"),
+        }
+        return PackedScene(
+            origin=self.origin,
+            textures={name: self._texture(name, texels) for name, texels in self.texels.items()},
+            frame=self.frame,
+            features=self._features(planes[0]),
+            constants={"BVH_STACK_SIZE": self._stack_size(top)},
+            statistics=self._statistics(top),
+            warnings=self.warnings,
+        )
+
+    # Trees
+
+    def _instances(self):
+        """The upper tree and the two instance records in the order of its leaves; (None, None) and None without instances."""
+        if self.world_only:
+            return None, None
+        placed = [i for i in self.scene.instances if id(i.geometry) in self.index]
+        matrices = np.array([i.matrix for i in placed], np.float64).reshape(-1, 4, 4)
+        which = [self.index[id(i.geometry)] for i in placed]
+        first = [self._material_block(i) for i in placed]
+        if len(self.scene.shapes):
+            matrices = np.concatenate([np.eye(4)[None], matrices])
+            which, first = [0, *which], [0, *first]
+            matrices[1:, :3, 3] -= self.origin
+        else:
+            matrices[:, :3, 3] -= self.origin
+        self._check_matrices(matrices, placed)
+        which = np.array(which, np.int64)
+        bounds = np.array([t.tree.bounds for t in self.trees], np.float64).reshape(-1, 2, 3)
+        lower, upper = _moved_boxes(bounds[which], matrices)
+        top = bvh.build(lower, upper, leaf_size=1)
+        return self._instance_records(
+            matrices[top.order], which[top.order], np.array(first)[top.order], top
+        ), top
+
+    def _check_matrices(self, matrices, placed):
+        bad = ~np.isfinite(matrices).all(axis=(1, 2))
+        with np.errstate(invalid="ignore"):
+            bad |= np.linalg.det(np.where(np.isfinite(matrices), matrices, 0.0)[:, :3, :3]) == 0.0
+        if bad.any():
+            which = int(np.argmax(bad)) - (len(matrices) - len(placed))
+            raise SceneError(
+                f"instance {placed[which].name!r} has a scale of 0 or a matrix that is not finite"
+            )
+
+    def _material_block(self, instance):
+        """Index of the material record of the instance's slot 0; instances with the same materials share a block."""
+        slots = self.trees[self.index[id(instance.geometry)]].slots
+        if slots > len(instance.materials):
+            raise SceneError(
+                f"instance {instance.name!r} has {len(instance.materials)} materials, its geometry uses slot {slots - 1}"
+            )
+        block = tuple(instance.materials)
+        if block not in self._blocks:
+            count = len(self.scene.materials)
+            if max(block) >= max(count, 1) or min(block) < 0:
+                raise SceneError(
+                    f"instance {instance.name!r} uses material {max(block)}, the scene has {count}"
+                )
+            if len(block) == 1:
+                return block[0]
+            self._blocks[block] = len(self.materials)
+            self.materials += [self.materials[slot] for slot in block]
+        return self._blocks[block]
+
+    def _instance_records(self, matrices, which, first_material, top):
+        starts = self._node_starts(top)
+        to_object = np.linalg.inv(matrices)
+        hit, surface = layout.INSTANCE.zeros(len(matrices)), layout.INSTANCE_SURFACE.zeros(len(matrices))
+        for row, axis in enumerate("xyz"):
+            hit[f"to_object_{axis}"] = to_object[:, row]
+            surface[f"to_world_{axis}"] = matrices[:, row]
+        hit["root"], hit["root_high"] = layout.split_index(starts[which])
+        hit["first_material"] = first_material
+        return hit, surface
+
+    def _node_starts(self, top):
+        """Index of the root node of each geometry's tree: the upper tree, if any, comes first."""
+        sizes = [len(top) if top is not None else 0, *(len(t.tree) for t in self.trees)]
+        return np.cumsum(sizes)[:-1]
+
+    def _nodes(self, top):
+        starts = self._node_starts(top)
+        bases = dict.fromkeys(range(len(BY_KIND)), 0)
+        nodes = []
+        if top is not None:
+            nodes.append(_node_records(top, 0, {0: 0}, {0: _INSTANCE}))
+        for start, geometry in zip(starts, self.trees, strict=True):
+            nodes.append(
+                _node_records(geometry.tree, int(start), dict(bases), {label: label for label in bases})
+            )
+            for label, (hit, _) in geometry.records.items():
+                bases[label] += len(hit)
+        self.texels["nodes"] = _texels(np.concatenate(nodes) if nodes else layout.NODE.zeros(1))
+
+    def _primitives(self):
+        for label, cls in enumerate(BY_KIND):
+            parts = [t.records[label] for t in self.trees if label in t.records]
+            if parts:
+                for record, arrays in zip(
+                    (cls.record, cls.surface_record), zip(*parts, strict=True), strict=True
+                ):
+                    self.texels[record.texture] = _texels(np.concatenate(arrays))
+
+    # What is few
+
+    def _records(self, texture, **records):
+        """Several kinds of records in one texture, each from a first texel of its own."""
+        texels = []
+        for name, array in records.items():
+            self.frame[f"{name}_first"] = sum(len(t) for t in texels)
+            texels.append(_texels(array))
+        self.texels[texture] = np.concatenate(texels)
+
+    def _planes(self):
+        if not self.scene.planes:
+            return layout.PLANE.zeros(0), layout.PLANE_SURFACE.zeros(0)
+        planes = Planes.concatenate(self.scene.planes).transformed(Similarity(np.eye(3), 1.0, -self.origin))
+        self._check_slots(planes.material, "plane")
+        return planes.records()
+
+    def _check_slots(self, material, what):
+        if len(material) and (material.max() >= len(self.materials) or material.min() < 0):
+            raise SceneError(
+                f"a {what} uses material {int(material.max())}, the scene has {len(self.scene.materials)}"
+            )
+
+    def _materials(self):
+        if len(self.scene.shapes):
+            for _, part in self.scene.shapes.kinds():
+                self._check_slots(part.material, part.kind)
+        records = layout.MATERIAL.zeros(len(self.materials))
+        for name in records.dtype.names:
+            if name != "unused":
+                records[name] = [getattr(material, name) for material in self.materials]
+        for number, material in enumerate(self.materials):
+            for name in ("diffuse_image", "reflect_image", "transmit_image", "glow_image"):
+                self._checked_image(getattr(material, name), f"material {number}")
+        return records
+
+    def _checked_image(self, image, user):
+        if image >= len(self.scene.images):
+            raise SceneError(f"{user} uses image {image}, the scene has {len(self.scene.images)}")
+        return image
+
+    def _lights(self):
+        records = layout.LIGHT.zeros(len(self.scene.lights))
+        for record, light in zip(records, self.scene.lights, strict=True):
+            offset = 0.0 if light.kind == LightKind.SUN else self.origin
+            record["position"], record["kind"], record["color"] = (
+                np.subtract(light.position, offset),
+                light.kind,
+                light.color,
+            )
+        if not all(np.isfinite(records[name]).all() for name in ("position", "color")):
+            raise SceneError("a light has a position or colour that is not finite")
+        return records
+
+    def _images(self):
+        """Image records; their texels go in the texture `images`, reduced where they would not fit."""
+        images = self.scene.images
+        records = layout.IMAGE.zeros(len(images))
+        if not images:
+            return records
+        pixels = _reduced(
+            [image.pixels for image in images], self.limit, [image.name for image in images], self.warnings
+        )
+        starts = np.cumsum([0, *(p.shape[0] * p.shape[1] for p in pixels)])
+        records["first"], records["first_high"] = layout.split_index(starts[:-1])
+        records["height"], records["width"] = np.array([p.shape[:2] for p in pixels]).T
+        records["interpolation"] = [INTERPOLATIONS.index(image.interpolation) for image in images]
+        records["extension"] = [EXTENSIONS.index(image.extension) for image in images]
+        self.texels["images"] = np.concatenate([p.reshape(-1, 4) for p in pixels])
+        return records
+
+    # The whole
+
+    def _texture(self, name, texels):
+        """Texels (n, 4) as rows of the fixed width. Raises SceneError when they do not fit a texture."""
+        count = max(len(texels), 1)
+        if count > self.limit:
+            raise SceneError(
+                f"the scene needs {count} texels of {name}, a texture of this device holds {self.limit}; "
+                "render it in parts or with fewer primitives"
+            )
+        width = min(count, layout.DATA_WIDTH)
+        height = -(-count // width)
+        padded = np.zeros((height * width, 4), np.float32)
+        padded[: len(texels)] = texels
+        return padded.reshape(height, width, 4)
+
+    def _features(self, planes):
+        features = {
+            f"HAS_{cls.kind.upper()}"
+            for label, cls in enumerate(BY_KIND)
+            if any(label in t.records for t in self.trees)
+        }
+        if len(planes):
+            features.add("HAS_PLANE")
+        if not self.world_only:
+            features.add("HAS_INSTANCES")
+        if any(
+            max(m.diffuse_image, m.reflect_image, m.transmit_image, m.glow_image) >= 0 for m in self.materials
+        ):
+            features.add("HAS_IMAGES")
+        if self.scene.world.image >= 0:
+            features.add("HAS_WORLD_IMAGE")
+        if any(max(m.absorption) > 0.0 for m in self.materials):
+            features.add("HAS_ABSORPTION")
+        return frozenset(features)
+
+    def _stack_size(self, top):
+        """References that can wait in a traversal, rounded up so that few programs are made."""
+        depth = max((t.tree.depth for t in self.trees), default=0) + (top.depth if top is not None else 0)
+        return -(-(depth + 1) // 8) * 8
+
+    def _statistics(self, top):
+        trees = [t.tree for t in self.trees] + ([top] if top is not None else [])
+        deepest = max((t.tree.depth for t in self.trees), default=0)
+        main = max(trees, key=lambda tree: len(tree.order), default=None)
+        return {
+            "primitives": self.scene.primitive_counts(),
+            "bvh": {
+                "nodes": sum(len(tree) for tree in trees),
+                "depth": deepest + (top.depth if top is not None else 0),
+                "sah_cost": float(bvh.sah_cost(main)) if main is not None and len(main) else 0.0,
+            },
+        }
+
+
+def _texels(records):
+    """Structured records (n,) as texels (n * texels of the record, 4) float32."""
+    return np.ascontiguousarray(records).view(np.float32).reshape(-1, 4)
+
+
+def _node_records(tree, node_start, primitive_starts, kinds):
+    """GPU nodes of a tree whose nodes begin at `node_start` and whose primitives of each label begin at a start of their own."""
+    labels = np.arange(max(primitive_starts) + 1)
+    starts = np.array([primitive_starts.get(int(label), 0) for label in labels], np.int64)
+    numbers = np.array([kinds.get(int(label), 0) for label in labels], np.int64)
+    label = np.maximum(tree.label, 0)
+    first = np.where(tree.is_leaf, tree.child + starts[label], np.maximum(tree.child, 0) + node_start)
+    low, high = layout.split_index(first)
+    leaf = layout.pack_leaf(np.where(tree.is_leaf, numbers[label], 0), tree.count, high)
+    boxes = tree.boxes.astype(np.float64)
+    padding = np.abs(boxes) * _BOX_PADDING + _BOX_PADDING_ABSOLUTE
+    lower = np.maximum(boxes[:, :, 0] - padding[:, :, 0], -bvh_far())
+    upper = np.minimum(boxes[:, :, 1] + padding[:, :, 1], bvh_far())
+    empty = ~tree.is_leaf & ~tree.is_inner
+    lower[empty] = upper[empty] = bvh_far()
+    records = layout.NODE.zeros(len(tree))
+    for child in (0, 1):
+        records[f"lower_{child}"], records[f"upper_{child}"] = lower[:, child], upper[:, child]
+        records[f"first_{child}"], records[f"leaf_{child}"] = low[:, child], leaf[:, child]
+    return records
+
+
+def bvh_far():
+    """Coordinate of the point box of an empty child: no ray reaches it within the lengths that the shader knows."""
+    return float(np.finfo(np.float32).max)
+
+
+def _moved_boxes(bounds, matrices):
+    """Boxes (n, 2, 3) under affine matrices (n, 4, 4): lower and upper corners (n, 3). (Arvo 1990, Graphics Gems.)"""
+    center = bounds.mean(axis=1)
+    half = (bounds[:, 1] - bounds[:, 0]) / 2.0
+    moved = np.einsum("nij,nj->ni", matrices[:, :3, :3], center) + matrices[:, :3, 3]
+    reach = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), half)
+    return moved - reach, moved + reach
+
+
+def _reduced(pixels, limit, names, warnings):
+    """The images, the largest halved again and again until all their texels fit `limit`; each halving is reported once."""
+    pixels, reduced = list(pixels), {}
+    while sum(p.shape[0] * p.shape[1] for p in pixels) > limit:
+        largest = max(range(len(pixels)), key=lambda i: pixels[i].size)
+        reduced.setdefault(largest, pixels[largest].shape[:2])
+        pixels[largest] = _halved(pixels[largest])
+    for i, (height, width) in reduced.items():
+        warnings.append(
+            f"image {names[i]!r} of {width} x {height} is too large for this device and was reduced to "
+            f"{pixels[i].shape[1]} x {pixels[i].shape[0]}"
+        )
+    return pixels
+
+
+def _halved(pixels):
+    """Half as many rows and columns, by averages; an odd last row or column goes into its neighbour."""
+    for axis in (0, 1):
+        size = pixels.shape[axis]
+        if size > 1:
+            starts = np.arange(0, size - size % 2, 2)
+            counts = np.diff([*starts, size]).reshape((-1, 1, 1) if axis == 0 else (1, -1, 1))
+            pixels = np.add.reduceat(pixels, starts, axis=axis) / counts.astype(np.float32)
+    return pixels
+
+
+__all__ = ["Geometry", "PackedScene", "pack", "scene_origin"]

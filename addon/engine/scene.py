@@ -1,0 +1,342 @@
+"""The plain data that is the renderer's only input: no bpy, no GPU, only dataclasses and numpy arrays.
+
+Right-handed, Z up, metres, scene-linear colour, images bottom row first. World coordinates may be large: they are kept in
+float64 and taken relative to an origin near the camera when they are packed.
+"""
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+import numpy as np
+
+from .errors import SceneError
+from .primitives import BY_KIND, Cones, Cylinders, Discs, Planes, Spheres, Triangles
+
+
+class LightKind(IntEnum):
+    POINT = 0  # falls off with the square of the distance
+    CONSTANT = 1  # positional, without fall-off, as in NFF
+    SUN = 2  # parallel rays
+
+
+@dataclass(frozen=True)
+class Light:
+    """A light without extent.
+
+    `color` (3,) is the radiance that a white diffuse surface facing the light returns: for POINT at distance 1. The class
+    methods make it from physical units.
+    """
+
+    kind: LightKind
+    position: tuple  # POINT, CONSTANT: where it is. SUN: direction towards it
+    color: tuple
+
+    @classmethod
+    def point(cls, position, watts, color=(1.0, 1.0, 1.0)):
+        """A point light of `watts` as Blender counts them: radiant intensity watts / 4 pi per steradian, divided by pi as a
+        diffuse surface does, and by Blender's further pi for lights of a radius that goes to 0: watts / (4 pi^2)."""
+        return cls(LightKind.POINT, tuple(position), tuple(np.multiply(color, watts / (4.0 * np.pi**2))))
+
+    @classmethod
+    def constant(cls, position, color=(1.0, 1.0, 1.0)):
+        """A positional light without fall-off, as the NFF databases have it."""
+        return cls(LightKind.CONSTANT, tuple(position), tuple(color))
+
+    @classmethod
+    def sun(cls, towards, strength, color=(1.0, 1.0, 1.0)):
+        """Parallel light from the direction `towards` (3,); `strength` is its irradiance in watts per square metre."""
+        direction = np.asarray(towards, np.float64)
+        return cls(
+            LightKind.SUN,
+            tuple(direction / np.linalg.norm(direction)),
+            tuple(np.multiply(color, strength / np.pi)),
+        )
+
+
+@dataclass(frozen=True)
+class Material:
+    """The paper's colour class (3.1.1): glow g, reflect r, transmit t, diffuse d, index n0, and absorption.
+
+    Colours are scene-linear RGB; each `*_image` is the index of an image in `Scene.images` that multiplies the colour by the
+    surface's uv, -1 for none. With `fresnel` the mirror ray has weight r F, the refracted one t (1 - F), and the diffuse
+    share is d (1 - F), F the exact unpolarised reflectance; without it the shares are the constants, as NFF has them.
+    """
+
+    diffuse: tuple = (0.8, 0.8, 0.8)
+    reflect: tuple = (0.0, 0.0, 0.0)
+    transmit: tuple = (0.0, 0.0, 0.0)
+    glow: tuple = (0.0, 0.0, 0.0)
+    ior: float = 1.5
+    absorption: tuple = (0.0, 0.0, 0.0)  # 1 / length, Beer-Lambert, inside the body
+    fresnel: bool = True
+    highlight: tuple = (0.0, 0.0, 0.0)  # weight of the lights' Phong highlight
+    shine: float = 1.0  # its exponent
+    diffuse_image: int = -1
+    reflect_image: int = -1
+    transmit_image: int = -1
+    glow_image: int = -1
+
+    def __post_init__(self):
+        for name in ("diffuse", "reflect", "transmit", "glow", "absorption", "highlight"):
+            value = np.broadcast_to(np.asarray(getattr(self, name), np.float64), (3,))
+            if not np.isfinite(value).all() or (value < 0.0).any():
+                raise SceneError(f"material: {name} is {tuple(value)}; it must be finite and not negative")
+            object.__setattr__(self, name, tuple(float(x) for x in value))
+        if not (np.isfinite(self.ior) and self.ior > 0.0):
+            raise SceneError(f"material: the index of refraction is {self.ior}; it must be positive")
+
+    @classmethod
+    def mirror(cls, color=(1.0, 1.0, 1.0)):
+        return cls(diffuse=0.0, reflect=color, fresnel=False)
+
+    @classmethod
+    def glass(cls, color=(1.0, 1.0, 1.0), ior=1.5, absorption=(0.0, 0.0, 0.0)):
+        return cls(diffuse=0.0, reflect=1.0, transmit=color, ior=ior, absorption=absorption)
+
+    @classmethod
+    def plastic(cls, color, ior=1.5):
+        """A diffuse body under a clear smooth surface."""
+        return cls(diffuse=color, reflect=1.0, ior=ior)
+
+
+@dataclass(frozen=True)
+class Image:
+    """A picture by uv: pixels (height, width, 4) float32, scene-linear, premultiplied alpha, bottom row first."""
+
+    pixels: np.ndarray
+    interpolation: str = "LINEAR"  # or CLOSEST
+    extension: str = "REPEAT"  # or EXTEND, CLIP
+    name: str = ""
+
+    def __post_init__(self):
+        pixels = np.asarray(self.pixels)
+        if pixels.ndim != 3 or pixels.shape[2] not in (3, 4) or 0 in pixels.shape:
+            raise SceneError(f"image {self.name!r}: shape {pixels.shape}, expected (height, width, 3 or 4)")
+        if pixels.shape[2] == 3:
+            pixels = np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)
+        object.__setattr__(self, "pixels", np.ascontiguousarray(pixels, np.float32))
+        if self.interpolation not in INTERPOLATIONS or self.extension not in EXTENSIONS:
+            raise SceneError(
+                f"image {self.name!r}: interpolation {self.interpolation!r} of {INTERPOLATIONS}, "
+                f"extension {self.extension!r} of {EXTENSIONS}"
+            )
+
+
+INTERPOLATIONS = ("CLOSEST", "LINEAR")
+EXTENSIONS = ("REPEAT", "EXTEND", "CLIP")
+
+
+@dataclass(frozen=True)
+class World:
+    """What a ray that hits nothing sees: `color`, times an equirectangular image where there is one.
+
+    The image is seen as Blender maps it: its centre is towards -Y rotated as in u = 1/2 - atan2(y, x) / 2 pi.
+    """
+
+    color: tuple = (0.05, 0.05, 0.05)
+    image: int = -1
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera that looks along its -Z with Y up, as Blender's.
+
+    `matrix` (4, 4): camera to world, without scale. `window` (left, right, bottom, top): the picture's edges at distance 1 in
+    front of the eye, or in world units when `orthographic`. `clip` (start, end): distances along the view.
+    """
+
+    matrix: np.ndarray
+    window: tuple
+    orthographic: bool = False
+    clip: tuple = (0.0, 1e30)
+
+    @classmethod
+    def look_at(cls, eye, target, up=(0.0, 0.0, 1.0), angle=45.0, aspect=1.0, clip=(0.0, 1e30)):
+        """A perspective camera at `eye` towards `target`; `angle` in degrees from the bottom to the top row, `aspect` the
+        picture's width over height. Raises SceneError when `up` is along the view."""
+        matrix = _look_at_matrix(eye, target, up)
+        half = float(np.tan(np.radians(angle) / 2.0))
+        return cls(matrix, (-half * aspect, half * aspect, -half, half), False, clip)
+
+    @classmethod
+    def orthographic_at(cls, eye, target, height, up=(0.0, 0.0, 1.0), aspect=1.0, clip=(0.0, 1e30)):
+        """Parallel rays from a window of `height` world units centred at `eye`, towards `target`."""
+        half = height / 2.0
+        return cls(_look_at_matrix(eye, target, up), (-half * aspect, half * aspect, -half, half), True, clip)
+
+
+def _look_at_matrix(eye, target, up):
+    eye, target, up = (np.asarray(v, np.float64) for v in (eye, target, up))
+    back = eye - target
+    right = np.cross(up, back)
+    if not np.isfinite(right).all() or not np.linalg.norm(right) > 1e-12 * np.linalg.norm(
+        up
+    ) * np.linalg.norm(back):
+        raise SceneError(
+            f"camera: from {tuple(eye)} to {tuple(target)} with up {tuple(up)} gives no view; the two points must differ "
+            "and up must not lie along the view"
+        )
+    back, right = back / np.linalg.norm(back), right / np.linalg.norm(right)
+    matrix = np.eye(4)
+    matrix[:3] = np.stack([right, np.cross(back, right), back, eye], axis=-1)
+    return matrix
+
+
+class Geometry:
+    """Primitives of any kinds in a space of their own; it gets one tree, and can stand in the scene many times.
+
+    Its primitives' `material` is a slot: an index into the `materials` of the instance.
+    """
+
+    def __init__(self, *primitives, name=""):
+        self.name = name
+        self._parts = {cls: [] for cls in BY_KIND}
+        for part in primitives:
+            self.add(part)
+
+    def add(self, primitives):
+        """Add primitives of one kind (Spheres, Cylinders, Cones, Discs or Triangles)."""
+        if type(primitives) not in self._parts:
+            raise SceneError(f"{type(primitives).__name__} cannot stand in a geometry")
+        if len(primitives):
+            self._parts[type(primitives)].append(primitives)
+
+    def kinds(self):
+        """Yield (leaf label, primitives) for each kind that is there."""
+        for label, cls in enumerate(BY_KIND):
+            if self._parts[cls]:
+                self._parts[cls] = [cls.concatenate(self._parts[cls])]
+                yield label, self._parts[cls][0]
+
+    def __len__(self):
+        return sum(len(part) for parts in self._parts.values() for part in parts)
+
+
+@dataclass(frozen=True)
+class Instance:
+    """A geometry in the world: `matrix` (4, 4) float64 object to world, any invertible affine; `materials` the index into
+    `Scene.materials` for each material slot."""
+
+    geometry: Geometry
+    matrix: np.ndarray
+    materials: tuple = (0,)
+    name: str = ""
+
+
+@dataclass
+class Scene:
+    """Everything a picture is made from.
+
+    Shapes that keep their form (see `Similarity`) go straight into `shapes`, one geometry in world space whose material slots
+    are the scene's materials. Meshes and stretched shapes are instances. `planes` is a list of infinite planes.
+    """
+
+    camera: Camera | None = None
+    world: World = field(default_factory=World)
+    lights: list = field(default_factory=list)
+    materials: list = field(default_factory=list)
+    images: list = field(default_factory=list)
+    shapes: Geometry = field(default_factory=lambda: Geometry(name="world"))
+    instances: list = field(default_factory=list)
+    planes: list = field(default_factory=list)
+
+    def add_material(self, material):
+        """Append a material; its index."""
+        self.materials.append(material)
+        return len(self.materials) - 1
+
+    def add_image(self, image):
+        """Append an image; its index."""
+        self.images.append(image)
+        return len(self.images) - 1
+
+    def add(self, primitives):
+        """Add primitives in world space: planes to the list of planes, all else to `shapes`."""
+        if isinstance(primitives, Planes):
+            self.planes.append(primitives)
+        else:
+            self.shapes.add(primitives)
+
+    def add_spheres(self, center, radius, material=0, **columns):
+        self.add(Spheres(center=center, radius=radius, material=material, **columns))
+
+    def add_cylinders(self, base, apex, radius, material=0, *, caps=True, **columns):
+        """Cylinders from base to apex; with `caps` they are solid."""
+        sides = Cylinders(base=base, apex=apex, radius=radius, material=material, **columns)
+        self.add(sides)
+        if caps:
+            self._add_caps(sides, np.abs(sides.radius), np.abs(sides.radius))
+
+    def add_cones(self, base, apex, base_radius, apex_radius=0.0, material=0, *, caps=True, **columns):
+        """Cones from base to apex, truncated where `apex_radius` is not 0; with `caps` they are solid."""
+        sides = Cones(
+            base=base,
+            apex=apex,
+            base_radius=base_radius,
+            apex_radius=apex_radius,
+            material=material,
+            **columns,
+        )
+        self.add(sides)
+        if caps:
+            self._add_caps(sides, np.abs(sides.base_radius), np.abs(sides.apex_radius))
+
+    def _add_caps(self, sides, base_radius, apex_radius):
+        """Discs with outward normals at both ends, except where the radius is 0."""
+        axis = sides.apex - sides.base
+        for center, normal, radius in ((sides.base, -axis, base_radius), (sides.apex, axis, apex_radius)):
+            rows = radius > 0.0
+            if rows.any():
+                self.add(
+                    Discs(
+                        center=center[rows],
+                        normal=normal[rows],
+                        radius=radius[rows],
+                        material=sides.material[rows],
+                        meridian=sides.meridian[rows],
+                    )
+                )
+
+    def add_discs(self, center, normal, radius, material=0, **columns):
+        self.add(Discs(center=center, normal=normal, radius=radius, material=material, **columns))
+
+    def add_triangles(self, p0, p1, p2, material=0, **columns):
+        self.add(Triangles(p0=p0, p1=p1, p2=p2, material=material, **columns))
+
+    def add_plane(self, point, normal, material=0, **columns):
+        self.add(Planes(point=point, normal=normal, material=material, **columns))
+
+    def add_light(self, light):
+        self.lights.append(light)
+
+    def primitive_counts(self):
+        """Number of primitives in the picture by kind; an instanced one counts each time, an absent kind not at all."""
+        counts = {}
+        per_geometry = {}
+        for geometry in [self.shapes, *(instance.geometry for instance in self.instances)]:
+            if id(geometry) not in per_geometry:
+                per_geometry[id(geometry)] = {part.kind: len(part) for _, part in geometry.kinds()}
+            for kind, count in per_geometry[id(geometry)].items():
+                counts[kind] = counts.get(kind, 0) + count
+        if self.planes:
+            counts["plane"] = sum(len(planes) for planes in self.planes)
+        return counts
+
+
+__all__ = [
+    "Camera",
+    "Cones",
+    "Cylinders",
+    "Discs",
+    "Geometry",
+    "Image",
+    "Instance",
+    "Light",
+    "LightKind",
+    "Material",
+    "Planes",
+    "Scene",
+    "Spheres",
+    "Triangles",
+    "World",
+]

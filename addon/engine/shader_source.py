@@ -1,0 +1,178 @@
+"""From shader files to the text of one program.
+
+A shader file may hold, each on a line of its own,
+
+    #include "name_lib.glsl"    another file of the shader folder, once per program
+    #include <record>           the struct and reader of a record of `layout`, once per program
+    #ifdef NAME / #ifndef NAME / #else / #endif
+
+Conditions are decided here, so that a program carries, compiles and asks samplers for what it uses only; every name they test
+must be known (`FEATURES`), a misspelt one is an error. Uniforms, samplers and outputs are not declared in the files: devices
+declare them from `ProgramSource`, each in its own way. `origin` finds file and line of a line that a driver complains about.
+"""
+
+import re
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from . import layout
+
+SHADER_FOLDER = Path(__file__).resolve().parents[1] / "shaders"
+
+#: Names that shader files may test.
+FEATURES = frozenset(
+    [f"HAS_{kind.upper()}" for kind in layout.KINDS if kind != "instance"]
+    + [
+        "HAS_PLANE",
+        "HAS_INSTANCES",
+        "HAS_IMAGES",
+        "HAS_WORLD_IMAGE",
+        "HAS_ABSORPTION",
+        "TINTED_SHADOWS",
+        "COUNT_RAYS",
+    ]
+)
+
+_RECORDS = {record.name: record for record in layout.RECORDS}
+_DIRECTIVE = re.compile(r"\s*#\s*(include|ifdef|ifndef|else|endif)\b\s*(.*?)\s*(?:/\*.*)?$")
+
+
+class ShaderSourceError(Exception):
+    """A shader file that includes or tests what does not exist: a defect of the shaders, with file and line."""
+
+
+@dataclass(frozen=True)
+class ProgramSource:
+    """All that a device needs to build a program that fills the screen.
+
+    `fragment`: GLSL without declarations of uniforms, samplers or outputs. `textures`: names of the data textures, the sampler
+    of `name` is `<name>_data`. `uniform_struct`: GLSL struct `Frame` of the uniform block `frame` ("" for none). `outputs`:
+    names of the vec4 outputs, in the order of the target's attachments.
+    """
+
+    name: str
+    fragment: str
+    textures: tuple[str, ...]
+    uniform_struct: str
+    outputs: tuple[str, ...]
+    lines: tuple[tuple[str, int], ...]
+
+    def origin(self, line):
+        """(file, line) that line number `line` of `fragment` (from 1) comes from."""
+        return self.lines[min(max(line, 1), len(self.lines)) - 1]
+
+    def listing(self, around, radius=3):
+        """Numbered lines of `fragment` around a line, each with the file it comes from, for error messages."""
+        text = self.fragment.splitlines()
+        first, last = max(around - radius, 1), min(around + radius, len(text))
+        rows = []
+        for number in range(first, last + 1):
+            file, line = self.origin(number)
+            rows.append(f"{'>' if number == around else ' '} {file}:{line}: {text[number - 1]}")
+        return "\n".join(rows)
+
+
+def program(entry, features=(), constants=None, outputs=("out_color",), folder=SHADER_FOLDER):
+    """Assemble the program whose main() is in the file `entry`.
+
+    `features`: names out of FEATURES that hold. `constants`: name to number, defined at the top.
+    Raises ShaderSourceError.
+    """
+    return _program(
+        entry, frozenset(features), tuple(sorted((constants or {}).items())), tuple(outputs), str(folder)
+    )
+
+
+@cache
+def _program(entry, features, constants, outputs, folder):
+    unknown = features - FEATURES
+    if unknown:
+        raise ShaderSourceError(f"unknown feature {sorted(unknown)[0]}")
+    composer = _Composer(Path(folder), features)
+    for name, value in constants:
+        composer.emit(f"#define {name} {value}", "<constants>", 1)
+    for number, line in enumerate(layout.glsl_constants().splitlines(), 1):
+        composer.emit(line, "<layout>", number)
+    composer.file(entry)
+    return ProgramSource(
+        name=entry,
+        fragment="\n".join(composer.text) + "\n",
+        textures=tuple(composer.textures),
+        uniform_struct=layout.glsl_struct(layout.FRAME),
+        outputs=outputs,
+        lines=tuple(composer.lines),
+    )
+
+
+class _Composer:
+    """Text, origin of each line and textures of a program while its files are read."""
+
+    def __init__(self, folder, features):
+        self.folder, self.features = folder, features
+        self.text, self.lines, self.textures = [], [], []
+        self._included = set()
+
+    def emit(self, line, file, number):
+        self.text.append(line)
+        self.lines.append((file, number))
+
+    def file(self, name, included_from=""):
+        """Emit a file of the shader folder, unless the program has it already."""
+        if name in self._included:
+            return
+        self._included.add(name)
+        path = self.folder / name
+        if not path.is_file():
+            raise ShaderSourceError(f"{included_from}no shader file {name}")
+        active = [True]
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            self._line(line, name, number, active)
+        if len(active) != 1:
+            raise ShaderSourceError(f"{name}: an #ifdef is not closed")
+
+    def _line(self, line, file, number, active):
+        match = _DIRECTIVE.match(line)
+        if not match:
+            if active[-1]:
+                self.emit(line, file, number)
+            return
+        directive, argument = match.groups()
+        where = f"{file}:{number}: "
+        if directive in ("ifdef", "ifndef"):
+            if argument not in FEATURES:
+                raise ShaderSourceError(f"{where}{argument} is not a known feature")
+            active.append(active[-1] and (argument in self.features) == (directive == "ifdef"))
+        elif len(active) == 1 and directive != "include":
+            raise ShaderSourceError(f"{where}#{directive} without #ifdef")
+        elif directive == "else":
+            outer = active[-2]
+            active[-1] = outer and not active[-1]
+        elif directive == "endif":
+            active.pop()
+        elif active[-1]:
+            self._include(argument, where)
+
+    def _include(self, argument, where):
+        name = argument[1:-1]
+        if argument == f'"{name}"':
+            self.file(name, where)
+        elif argument == f"<{name}>" and name in _RECORDS:
+            self._record(_RECORDS[name])
+        else:
+            raise ShaderSourceError(f"{where}#include {argument} names no file and no record")
+
+    def _record(self, record):
+        key = f"<{record.name}>"
+        if key in self._included:
+            return
+        self._included.add(key)
+        text = layout.glsl_reader(record)
+        if record.texture not in self.textures:
+            self.textures.append(record.texture)
+            text = layout.glsl_fetch(record.texture) + text
+        if record is layout.IMAGE:  # an image record goes with the texels it points to
+            self.textures.append("images")
+            text = layout.glsl_fetch("images") + text
+        for number, line in enumerate(text.splitlines(), 1):
+            self.emit(line, key, number)

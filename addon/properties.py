@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Conic's settings: `scene.conic` and `object.conic`. Their names are kept in people's files and scripts.
+
+Each property has an update callback: without one, a value set from Python would reach neither the depsgraph
+nor the viewport.
+"""
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty
+
+
+def tag_update(_properties, _context):
+    """Nothing to do: that there is a callback makes Blender tag the owner as changed."""
+
+
+SHADOWS = (
+    ("OPAQUE", "Opaque", "Whatever lies between a surface and a light blocks it, glass too"),
+    ("TINTED", "Tinted", "Light passes straight through transparent bodies and takes on their color"),
+)
+
+RECOGNISE = (
+    ("ALWAYS", "Always", "Every mesh of exactly the form of Blender's spheres, cylinders, cones or circles"),
+    ("SMOOTH", "Smooth Shaded", "Only those shaded smooth; flat shaded ones keep their facets"),
+    ("NEVER", "Never", "Only objects whose own setting names a shape"),
+)
+
+PRIMITIVES = (
+    ("AUTO", "Automatic", "An exact shape where the mesh is recognised as one, else the mesh"),
+    ("MESH", "Mesh", "The triangles of the mesh, whatever its form"),
+    ("SPHERE", "Sphere", "An exact sphere; an ellipsoid where the object is stretched"),
+    ("CYLINDER", "Cylinder", "An exact cylinder along the object's Z axis"),
+    ("CONE", "Cone", "An exact cone, pointed or truncated, along the object's Z axis"),
+    ("DISC", "Disc", "An exact flat disc"),
+    ("PLANE", "Plane", "A plane without end, where the object's X and Y axes lie"),
+)
+
+
+class ConicSceneSettings(bpy.types.PropertyGroup):
+    """`scene.conic`"""
+
+    samples: IntProperty(
+        name="Render",
+        description="Rays through each pixel in the final render. The first goes through its center",
+        default=16,
+        min=1,
+        soft_max=256,
+        max=65536,
+        update=tag_update,
+    )
+    preview_samples: IntProperty(
+        name="Viewport",
+        description="Rays through each pixel in the viewport and in previews",
+        default=4,
+        min=1,
+        soft_max=64,
+        max=65536,
+        update=tag_update,
+    )
+    max_depth: IntProperty(
+        name="Max Depth",
+        description="Longest chain of rays that is followed. 1 is what the camera sees directly",
+        default=8,
+        min=1,
+        soft_max=32,
+        max=64,
+        update=tag_update,
+    )
+    weight_cutoff: FloatProperty(
+        name="Cut-Off",
+        description="Rays that contribute less than this share to a pixel are not followed. 0 follows all",
+        default=1.0 / 512.0,
+        min=0.0,
+        max=1.0,
+        soft_max=0.1,
+        precision=4,
+        step=0.1,
+        update=tag_update,
+    )
+    shadows: EnumProperty(
+        name="Shadows",
+        description="What transparent bodies do to the light that falls through them",
+        items=SHADOWS,
+        default="TINTED",
+        update=tag_update,
+    )
+    recognise: EnumProperty(
+        name="Recognize",
+        description="Which meshes are rendered as the exact shape that they stand for",
+        items=RECOGNISE,
+        default="ALWAYS",
+        update=tag_update,
+    )
+
+
+class ConicObjectSettings(bpy.types.PropertyGroup):
+    """`object.conic`"""
+
+    primitive: EnumProperty(
+        name="Render As",
+        description="The exact shape that this object is rendered as",
+        items=PRIMITIVES,
+        default="AUTO",
+        update=tag_update,
+    )
+
+
+_SETTINGS = ((bpy.types.Scene, ConicSceneSettings), (bpy.types.Object, ConicObjectSettings))
+
+
+def register():
+    for owner, settings in _SETTINGS:
+        bpy.utils.register_class(settings)
+        owner.conic = PointerProperty(type=settings, name="Conic")
+
+
+def unregister():
+    for owner, settings in reversed(_SETTINGS):
+        del owner.conic
+        bpy.utils.unregister_class(settings)

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A final render: one view layer of one frame, in all its views, from Blender's data to the render result."""
+
+import os
+import time
+
+import numpy as np
+
+from .engine import ConicError, Session
+from .sync.camera import camera_of_render
+from .sync.scene_sync import sync_scene, sync_settings
+
+STEP_SECONDS = 0.1  # between two looks at whether the user wants out
+RESULT_SECONDS = 0.5  # between two showings of what is there so far
+
+
+def new_device():
+    """A device on Blender's GPU context, which must be active.
+
+    The environment variable CONIC_DEVICE=headless takes a context of its own instead, which needs moderngl;
+    it is there to compare the two. Raises DeviceError where there is no such device.
+    """
+    if os.environ.get("CONIC_DEVICE") == "headless":
+        from .engine.devices.headless import HeadlessDevice
+
+        return HeadlessDevice()
+    from .engine.devices.blender_gpu import BlenderDevice
+
+    return BlenderDevice()
+
+
+class Reporter:
+    """Passes messages to Blender's report and its console, each once."""
+
+    def __init__(self, engine):
+        self.engine = engine
+        self.seen = set()
+
+    def __call__(self, level, message):
+        """Report `message`; `level` is INFO, WARNING or ERROR."""
+        if message not in self.seen:
+            self.seen.add(message)
+            self.engine.report({level}, message)
+
+
+def border_of(engine, render):
+    """What to render of the frame, (x, y, width, height) in pixels from the lower left; None for all of it.
+
+    As Blender cuts it: float32 products, their fractions dropped.
+    """
+    if engine.is_preview or not render.use_border:
+        return None
+    size = np.array([engine.resolution_x, engine.resolution_y], np.float32)
+    low = (np.array([render.border_min_x, render.border_min_y], np.float32) * size).astype(int)
+    high = (np.array([render.border_max_x, render.border_max_y], np.float32) * size).astype(int)
+    return (*low.tolist(), *(high - low).tolist())
+
+
+def render_layer(engine, depsgraph):
+    """Render the view layer of `depsgraph` for a bpy.types.RenderEngine.
+
+    What a user can put right is reported as an error, upon which Blender writes no picture and ends an
+    animation.
+    """
+    try:
+        LayerRender(engine, depsgraph).run()
+    except ConicError as error:
+        engine.report({"ERROR"}, str(error))
+
+
+class LayerRender:
+    """The render of one view layer."""
+
+    def __init__(self, engine, depsgraph):
+        self.engine = engine
+        self.depsgraph = depsgraph
+        self.report = Reporter(engine)
+        self.render_settings = depsgraph.scene_eval.render
+        self.size = engine.resolution_x, engine.resolution_y
+        self.border = border_of(engine, self.render_settings)
+        self.settings = sync_settings(depsgraph.scene_eval, engine.is_preview)
+        self.views = [view.name for view in engine.get_result().views]
+        self.shapes = ""
+
+    def run(self):
+        """Render all views, until done or until the user stops it. Raises ConicError."""
+        self.engine.update_stats("Conic", "Reading the scene")
+        self.engine.active_view_set(self.views[0])
+        scene = sync_scene(self.depsgraph, *self.size, engine=self.engine, report=self.report)
+        self.shapes = _counted(scene.primitive_counts())
+        session = Session(new_device())
+        try:
+            self.engine.update_stats("Conic", f"Building | {self.shapes}")
+            session.load(scene, self.settings)
+            for index, view in enumerate(self.views):
+                if not self.engine.test_break():
+                    self.render_view(session, index, view)
+        finally:
+            session.free()
+
+    def render_view(self, session, index, view):
+        """Render one view (an eye, where there are several), and show it as it grows."""
+        self.engine.active_view_set(view)
+        camera = camera_of_render(self.engine, self.depsgraph, *self.size)
+        session.start(*self.size, camera=camera, border=self.border)
+        size = self.border[2:] if self.border else self.size
+        # The place of a result is relative to the border.
+        result = self.engine.begin_result(0, 0, *size, layer=self.depsgraph.view_layer.name, view=view)
+        try:
+            self.draw(session, index, result)
+        finally:
+            self.show(session, result)
+            self.engine.end_result(result)
+        for warning in session.warnings:
+            self.report("WARNING", warning)
+
+    def draw(self, session, index, result):
+        """Draw until done or stopped, with progress and, now and then, the picture so far."""
+        shown = time.monotonic()
+        while not self.engine.test_break() and session.step(STEP_SECONDS):
+            self.engine.update_progress((index + session.progress) / len(self.views))
+            sample = sample_text(session.progress, self.settings.samples)
+            self.engine.update_stats("Conic", f"{sample} | {self.shapes}")
+            if time.monotonic() - shown > RESULT_SECONDS:
+                self.show(session, result)
+                self.engine.update_result(result)
+                shown = time.monotonic()
+
+    def show(self, session, result):
+        """Copy what is there so far to the render result."""
+        result.layers[0].passes["Combined"].rect.foreach_set(session.pixels().reshape(-1))
+
+
+def sample_text(progress, samples):
+    """Which of the `samples` is being drawn at `progress` in [0, 1], as a user reads it."""
+    return f"Sample {min(int(progress * samples) + 1, samples)}/{samples}"
+
+
+def _counted(counts):
+    """`2 cylinders, 7381 spheres` from a dictionary of numbers by kind."""
+    words = [f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in sorted(counts.items())]
+    return ", ".join(words) or "nothing to see"

@@ -1,0 +1,177 @@
+/* The one traversal: nearest and any hit, the tree of instances and the trees of geometries.
+ *
+ * A node holds the boxes of both its children. A reference to a child is an index and a `leaf` number, which says what kind
+ * and how many primitives a leaf holds, 0 for an inner node. An instance is a leaf of the upper tree: its geometry is walked
+ * with the ray in object space, on the same stack, until the stack is back where it stood. */
+#include "ray_lib.glsl"
+#include "primitive_lib.glsl"
+#include <node>
+#ifdef HAS_INSTANCES
+#include <instance>
+#include <instance_surface>
+#endif
+
+#define BVH_MISS 3.0e38
+
+/* Where a ray has a component 0, a tiny one in its place gives the slab an interval without 0 * infinity. */
+vec3 bvh_inverse(vec3 direction)
+{
+  vec3 tiny = vec3(direction.x < 0.0 ? -1e-30 : 1e-30, direction.y < 0.0 ? -1e-30 : 1e-30, direction.z < 0.0 ? -1e-30 : 1e-30);
+  return 1.0 / mix(direction, tiny, lessThan(abs(direction), vec3(1e-30)));
+}
+
+/* Paper 3.2.7: where the segment t in (0, t_max] enters a box, 0 when it starts inside, BVH_MISS when it misses. Boxes are
+ * stored a little larger than what they hold, so that rounding here never loses a hit on their faces. */
+float bvh_box_hit(vec3 lower, vec3 upper, vec3 origin, vec3 inverse, float t_max)
+{
+  vec3 t0 = (lower - origin) * inverse;
+  vec3 t1 = (upper - origin) * inverse;
+  vec3 first = min(t0, t1);
+  vec3 last = max(t0, t1);
+  float enter = max(max(first.x, first.y), max(first.z, 0.0));
+  float leave = min(min(last.x, last.y), min(last.z, t_max));
+  return enter <= leave ? enter : BVH_MISS;
+}
+
+#ifdef HAS_INSTANCES
+/* The ray in object space, its direction unit again; `scale` is what a length along it is multiplied by. */
+Ray bvh_object_ray(Instance instance, Ray ray, out float scale)
+{
+  vec4 origin = vec4(ray.origin, 1.0);
+  vec3 direction = vec3(dot(instance.to_object_x.xyz, ray.direction), dot(instance.to_object_y.xyz, ray.direction),
+                        dot(instance.to_object_z.xyz, ray.direction));
+  scale = length(direction);
+  return Ray(vec3(dot(instance.to_object_x, origin), dot(instance.to_object_y, origin), dot(instance.to_object_z, origin)),
+             direction / scale);
+}
+#endif
+
+/* The nearest hit in (0, t_max), or the first one found when `any_hit`; hit.kind is -1 when there is none. */
+Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
+{
+  Hit hit = Hit(t_max, -1, 0, -1);
+  primitive_planes_hit(int(frame.plane_count), world_ray, hit);
+  if (frame.root_count < 0.5 || (any_hit && hit.kind >= 0)) {
+    return hit;
+  }
+  Ray ray = world_ray;
+  vec3 inverse = bvh_inverse(ray.direction);
+  int stack_index[BVH_STACK_SIZE];
+  int stack_leaf[BVH_STACK_SIZE];
+  float stack_t[BVH_STACK_SIZE];
+  int top = 0;
+  int index = 0;
+  int leaf = 0;
+#ifdef HAS_INSTANCES
+  int instance = -1;
+  int instance_top = -1; /* where the stack stood when the instance was entered */
+  float scale = 1.0;
+#endif
+  while (true) {
+    if (LEAF_COUNT(leaf) == 0) {
+      Node node = read_node(JOIN_INDEX(index, LEAF_HIGH(leaf)));
+      float t_0 = bvh_box_hit(node.lower_0, node.upper_0, ray.origin, inverse, hit.t);
+      float t_1 = bvh_box_hit(node.lower_1, node.upper_1, ray.origin, inverse, hit.t);
+      bool first_is_near = t_0 <= t_1;
+      float t_near = min(t_0, t_1);
+      float t_far = max(t_0, t_1);
+      if (t_far < BVH_MISS) {
+        stack_index[top] = first_is_near ? node.first_1 : node.first_0;
+        stack_leaf[top] = first_is_near ? node.leaf_1 : node.leaf_0;
+        stack_t[top] = t_far;
+        top++;
+      }
+      if (t_near < BVH_MISS) {
+        index = first_is_near ? node.first_0 : node.first_1;
+        leaf = first_is_near ? node.leaf_0 : node.leaf_1;
+        continue;
+      }
+    }
+#ifdef HAS_INSTANCES
+    else if (LEAF_KIND(leaf) == KIND_INSTANCE) {
+      instance = JOIN_INDEX(index, LEAF_HIGH(leaf));
+      instance_top = top;
+      Instance entered = read_instance(instance);
+      ray = bvh_object_ray(entered, world_ray, scale);
+      inverse = bvh_inverse(ray.direction);
+      hit.t *= scale;
+      index = entered.root;
+      leaf = LEAF_INNER(entered.root_high);
+      continue;
+    }
+#endif
+    else {
+      float t_before = hit.t;
+      primitive_leaf_hit(LEAF_KIND(leaf), JOIN_INDEX(index, LEAF_HIGH(leaf)), LEAF_COUNT(leaf), ray, hit);
+      if (hit.t < t_before) {
+#ifdef HAS_INSTANCES
+        hit.instance = instance;
+#endif
+        if (any_hit) {
+          break;
+        }
+      }
+    }
+    /* Take the next reference that is still nearer than the hit. */
+    bool found = false;
+    while (!found) {
+#ifdef HAS_INSTANCES
+      if (top == instance_top) {
+        hit.t /= scale;
+        scale = 1.0;
+        ray = world_ray;
+        inverse = bvh_inverse(ray.direction);
+        instance = -1;
+        instance_top = -1;
+      }
+#endif
+      if (top == 0) {
+        break;
+      }
+      top--;
+      found = stack_t[top] < hit.t;
+    }
+    if (!found) {
+      break;
+    }
+    index = stack_index[top];
+    leaf = stack_leaf[top];
+  }
+#ifdef HAS_INSTANCES
+  hit.t /= scale; /* only when an any-hit ended inside an instance */
+#endif
+  return hit;
+}
+
+/* The surface of a hit, in world space. */
+Surface bvh_surface(Hit hit, Ray world_ray)
+{
+#ifdef HAS_INSTANCES
+  if (hit.instance >= 0) {
+    float scale;
+    Instance instance = read_instance(hit.instance);
+    InstanceSurface placed = read_instance_surface(hit.instance);
+    Ray ray = bvh_object_ray(instance, world_ray, scale);
+    hit.t *= scale;
+    Surface surface = primitive_surface(hit, ray);
+    /* Normals go with the transposed inverse. */
+    vec3 n = surface.geometric_normal;
+    surface.geometric_normal =
+        normalize(n.x * instance.to_object_x.xyz + n.y * instance.to_object_y.xyz + n.z * instance.to_object_z.xyz);
+    n = surface.shading_normal;
+    surface.shading_normal =
+        normalize(n.x * instance.to_object_x.xyz + n.y * instance.to_object_y.xyz + n.z * instance.to_object_z.xyz);
+    vec4 position = vec4(surface.position, 1.0);
+    surface.position =
+        vec3(dot(placed.to_world_x, position), dot(placed.to_world_y, position), dot(placed.to_world_z, position));
+    /* The object's own error, stretched at most by the longest row, and the rounding of this transform itself. */
+    float stretch = sqrt(dot(placed.to_world_x.xyz, placed.to_world_x.xyz) + dot(placed.to_world_y.xyz, placed.to_world_y.xyz) +
+                         dot(placed.to_world_z.xyz, placed.to_world_z.xyz));
+    vec3 moved = abs(vec3(placed.to_world_x.w, placed.to_world_y.w, placed.to_world_z.w));
+    surface.error = 2.0 * (surface.error * stretch + ray_error(moved, 0.0));
+    surface.material += instance.first_material;
+    return surface;
+  }
+#endif
+  return primitive_surface(hit, world_ray);
+}

@@ -1,0 +1,23 @@
+/* The disc: paper 3.1.7 and 3.2.4. */
+#include "ray_lib.glsl"
+#include <disc>
+#include <disc_surface>
+
+/* Nearest t in (0, t_max), else t_max. */
+float disc_hit(Disc disc, Ray ray, float t_max)
+{
+  vec3 to_center = disc.center - ray.origin;
+  float t = dot(to_center, disc.normal) / dot(ray.direction, disc.normal);
+  vec3 offset = t * ray.direction - to_center;
+  /* A ray in the plane makes t infinite or not a number, which no comparison lets through. */
+  return (t > 0.0 && t < t_max && dot(offset, offset) <= disc.radius * disc.radius) ? t : t_max;
+}
+
+Surface disc_surface(Disc disc, DiscSurface info, Ray ray, float t)
+{
+  vec3 offset = ray.origin - disc.center + t * ray.direction;
+  offset -= dot(offset, disc.normal) * disc.normal;
+  vec2 uv = vec2(dot(offset, info.meridian), dot(offset, cross(disc.normal, info.meridian))) / (2.0 * disc.radius) + 0.5;
+  return Surface(disc.center + offset, disc.normal, disc.normal, uv * info.uv_transform.xy + info.uv_transform.zw,
+                 info.material, ray_error(disc.center, disc.radius));
+}

@@ -1,0 +1,38 @@
+/* Mirror, refraction and absorption: paper 3.3 and 2.3, with what the text breaks off before. */
+
+float optics_largest(vec3 color)
+{
+  return max(color.r, max(color.g, color.b));
+}
+
+/* Exact reflectance of unpolarised light at a smooth dielectric. `cos_i` >= 0, `eta` = n_from / n_to; `cos_t` is the
+ * refracted ray's, and the reflectance is 1 at total internal reflection. (Born and Wolf 1.5.2.) */
+float optics_fresnel(float cos_i, float eta, out float cos_t)
+{
+  float k = 1.0 - eta * eta * (1.0 - cos_i * cos_i);
+  cos_t = sqrt(max(k, 0.0));
+  if (k <= 0.0) {
+    return 1.0;
+  }
+  float r_s = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+  float r_p = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+  return 0.5 * (r_s * r_s + r_p * r_p);
+}
+
+/* (48). */
+vec3 optics_mirror(vec3 direction, vec3 normal)
+{
+  return normalize(direction - 2.0 * dot(normal, direction) * normal);
+}
+
+/* Snell's law; `normal` faces the incoming ray. */
+vec3 optics_refract(vec3 direction, vec3 normal, float cos_i, float cos_t, float eta)
+{
+  return normalize(eta * direction + (eta * cos_i - cos_t) * normal);
+}
+
+/* Beer and Lambert. A length that is not finite belongs to a ray that ends nowhere. */
+vec3 optics_absorb(vec3 absorption, float path_length)
+{
+  return exp(-absorption * path_length);
+}

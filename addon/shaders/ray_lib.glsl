@@ -1,0 +1,34 @@
+/* Rays and the numbers that keep them off the surface they start from. */
+
+struct Ray {
+  vec3 origin;
+  vec3 direction; /* unit */
+};
+
+/* What a hit needs to be shaded: everything in the space of the ray. */
+struct Surface {
+  vec3 position;
+  vec3 geometric_normal; /* unit, outward: from the inside of the body to the outside */
+  vec3 shading_normal;   /* unit, on the side of the geometric normal */
+  vec2 uv;
+  int material;
+  float error; /* bound of the rounding error of position, an absolute length */
+};
+
+/* A position that is put on its surface again is wrong by a few roundings of the numbers that it was made of; 2^-18 is 32
+ * units in the last place, which covers the intersection that the next ray makes of it as well. */
+#define RAY_RELATIVE_ERROR 3.8e-6
+
+float ray_error(vec3 position, float extent)
+{
+  vec3 size = abs(position);
+  return RAY_RELATIVE_ERROR * (max(size.x, max(size.y, size.z)) + extent);
+}
+
+/* Origin of a ray that leaves a surface towards `direction`: moved off along the normal, by no more than rounding asks for
+ * (Waechter and Binder, Ray Tracing Gems, chapter 6, with a bound in place of their fixed steps). */
+vec3 ray_spawn(Surface surface, vec3 direction)
+{
+  float side = dot(direction, surface.geometric_normal) < 0.0 ? -1.0 : 1.0;
+  return surface.position + (side * surface.error) * surface.geometric_normal;
+}

@@ -1,0 +1,162 @@
+"""The shader nodes that are understood, each as `Lobes`."""
+
+from .lobes import Lobes, dielectric_coat, ior_of_reflectance, metal, normal_reflectance, sharpness
+from .values import Value
+
+GREY = Value((0.8, 0.8, 0.8))
+#: Inputs that change nothing here; linked, or set to something, they are reported once for each material.
+_IGNORED = (
+    "Normal",
+    "Coat Normal",
+    "Diffuse Roughness",
+    "Subsurface Weight",
+    "Anisotropic",
+    "Anisotropy",
+    "Sheen Weight",
+    "Thin Film Thickness",
+    "Thin Wall",
+)
+
+
+def read_closure(source, reader):
+    """The `Lobes` of the shader that feeds a socket; nothing linked is black."""
+    if source is None or source.node is None:
+        return Lobes()
+    read = _NODES.get(source.type)
+    if read is None:
+        return _unknown(source, reader)
+    _report_ignored(source, reader)
+    return read(source, reader)
+
+
+def _unknown(source, reader):
+    """A shader that is not understood is diffuse, of its colour where it has one."""
+    color = source.input("Color") or source.input("Base Color")
+    reader.not_understood(source, "a diffuse surface" + (" of its color" if color else ""))
+    return Lobes(diffuse=reader.color(color) if color else GREY)
+
+
+def _report_ignored(source, reader):
+    used = []
+    for name in _IGNORED:
+        socket = source.node.inputs.get(name)
+        if socket is not None and socket.enabled and (socket.is_linked or _is_set(socket)):
+            used.append(socket.name)
+    if used:
+        reader.warn(f"node {source.node.name!r}: {', '.join(used)} is not rendered")
+
+
+def _is_set(socket):
+    return socket.type != "VECTOR" and bool(socket.default_value)
+
+
+def _principled(source, reader):
+    def number(name):
+        return reader.number(source.input(name))
+
+    alpha = number("Alpha")
+    lobes = principled(
+        reader.color(source.input("Base Color")),
+        metallic=number("Metallic"),
+        roughness=number("Roughness"),
+        transmission=number("Transmission Weight"),
+        ior=number("IOR"),
+        specular=number("Specular IOR Level"),
+        tint=reader.color(source.input("Specular Tint")),
+    )
+    _report_rough(source, reader, number("Transmission Weight"), number("Roughness"))
+    coat = number("Coat Weight")
+    if coat > 0.0:
+        tint = Value((coat,) * 3)
+        lobes = lobes.plus(dielectric_coat(tint, number("Coat Roughness"), max(number("Coat IOR"), 1.0)))
+    strength = number("Emission Strength")
+    if strength > 0.0:
+        lobes = lobes.plus(Lobes(glow=reader.color(source.input("Emission Color")).times(strength)))
+    return lobes if alpha >= 1.0 else Lobes(clear=Value((1.0, 1.0, 1.0))).mixed(lobes, max(alpha, 0.0))
+
+
+def principled(base, *, metallic=0.0, roughness=0.5, transmission=0.0, ior=1.5, specular=0.5, tint=None):
+    """Blender's Principled BSDF: metal, glass and a dielectric over a diffuse body, by weight.
+
+    As in Cycles, glass takes the root of the base colour at each of its surfaces, and the specular level changes the index
+    of refraction of the opaque body only.
+    """
+    m, w = (min(max(x, 0.0), 1.0) for x in (metallic, transmission))
+    ior = max(ior, 1e-3)
+    white = Value((1.0, 1.0, 1.0))
+    coat_ior = ior_of_reflectance(2.0 * specular * normal_reflectance(ior)) if specular != 0.5 else ior
+    coat = dielectric_coat(tint or white, roughness, coat_ior)
+    # A smooth coat takes F of the body's light in the engine, a rough one, which is a highlight only, takes it here.
+    taken = (1.0 - sharpness(roughness)) * normal_reflectance(coat_ior)
+    lobes = Lobes(diffuse=base.times(1.0 - taken)).plus(coat).times((1.0 - m) * (1.0 - w))
+    if w > 0.0:
+        lobes = lobes.plus(Lobes(coat=white, glass=base.sqrt(), ior=ior).times((1.0 - m) * w))
+    return lobes.plus(metal(base, roughness).times(m)) if m > 0.0 else lobes
+
+
+def _report_rough(source, reader, transmission, roughness):
+    if transmission > 0.0 and roughness > 0.1:
+        reader.warn(f"node {source.node.name!r}: rough refraction is not rendered, it is drawn sharp")
+
+
+def _diffuse(source, reader):
+    return Lobes(diffuse=reader.color(source.input("Color")))
+
+
+def _glossy(source, reader):
+    color = source.input("Color") or source.input("Base Color")
+    return metal(reader.color(color), reader.number(source.input("Roughness")))
+
+
+def _glass(source, reader):
+    _report_rough(source, reader, 1.0, reader.number(source.input("Roughness")))
+    color = reader.color(source.input("Color"))
+    return Lobes(coat=color, glass=color, ior=max(reader.number(source.input("IOR")), 1e-3))
+
+
+def _refraction(source, reader):
+    _report_rough(source, reader, 1.0, reader.number(source.input("Roughness")))
+    ior = max(reader.number(source.input("IOR")), 1e-3)
+    return Lobes(clear=reader.color(source.input("Color")), clear_ior=ior)
+
+
+def _transparent(source, reader):
+    return Lobes(clear=reader.color(source.input("Color")), clear_ior=1.0)
+
+
+def _emission(source, reader):
+    return Lobes(glow=reader.color(source.input("Color")).times(reader.number(source.input("Strength"))))
+
+
+def _mix(source, reader):
+    factor, a, b = source.input(0), source.input(1), source.input(2)
+    first, second = read_closure(a, reader), read_closure(b, reader)
+    if factor.type == "FRESNEL":
+        return first.mixed_by_fresnel(second, max(reader.number(factor.input("IOR")), 1.0))
+    if factor.type == "LAYER_WEIGHT" and factor.output.identifier == "Fresnel":
+        # Cycles: the index of refraction of a blend is 1 / (1 - blend).
+        blend = min(max(reader.number(factor.input("Blend")), 0.0), 0.99)
+        return first.mixed_by_fresnel(second, 1.0 / (1.0 - blend))
+    if factor.node is not None and factor.type not in ("VALUE", "RGB", "LIGHT_PATH"):
+        reader.not_understood(factor, "half of each shader")
+        return first.mixed(second, 0.5)
+    return first.mixed(second, min(max(reader.number(factor), 0.0), 1.0))
+
+
+def _add(source, reader):
+    return read_closure(source.input(0), reader).plus(read_closure(source.input(1), reader))
+
+
+_NODES = {
+    "BSDF_PRINCIPLED": _principled,
+    "BSDF_DIFFUSE": _diffuse,
+    "BSDF_GLOSSY": _glossy,
+    "BSDF_METALLIC": _glossy,
+    "BSDF_GLASS": _glass,
+    "BSDF_REFRACTION": _refraction,
+    "BSDF_TRANSPARENT": _transparent,
+    "EMISSION": _emission,
+    "BACKGROUND": _emission,
+    "MIX_SHADER": _mix,
+    "ADD_SHADER": _add,
+}

@@ -1,0 +1,34 @@
+"""What differs between Blender 4.2 and 5.2, in one place; guards ask for the feature where that is possible."""
+
+import bpy
+
+#: From here on materials, worlds and lights always have a node tree; asking for `use_nodes` gives a deprecation warning.
+_ALWAYS_NODES = (5, 0, 0)
+
+
+def node_tree(owner):
+    """The node tree in use of a material, world or light; None where it is shaded without nodes."""
+    if bpy.app.version < _ALWAYS_NODES and not owner.use_nodes:
+        return None
+    return owner.node_tree
+
+
+def light_factor(light):
+    """What multiplies a light's energy, (r, g, b): colour, and from 4.5 exposure, temperature and `normalize`.
+
+    A light that is not normalised gives its energy for each unit of its area, as Cycles has it.
+    """
+    color = tuple(light.color)
+    if not hasattr(light, "normalize"):
+        return color
+    factor = 2.0**light.exposure
+    if not light.normalize:
+        factor *= _area(light)
+    if light.use_temperature:
+        color = tuple(c * t for c, t in zip(color, light.temperature_color, strict=True))
+    return tuple(c * factor for c in color)
+
+
+def _area(light):
+    """The area by which `normalize` divides; a sun without an angle has none and counts as 1."""
+    return light.area() if light.type != "SUN" or light.angle > 0.0 else 1.0

@@ -1,0 +1,82 @@
+"""Blender's materials as the engine's: node trees of the basic shaders with constants and images."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..engine.scene import Material
+from .compat import node_tree
+from .closures import principled, read_closure
+from .keys import original_key
+from .lobes import Lobes
+from .nodes import output_source
+from .textures import NodeReader
+from .values import Value
+
+DEFAULT = Material()  # Blender's grey, for a slot without material
+
+
+@dataclass(frozen=True)
+class Shading:
+    """A material of the scene: its number, and the `UvSource` of its images, None where it has none."""
+
+    index: int
+    uv: object = None
+    name: str = ""
+
+
+class Shadings:
+    """The materials of a scene, each read once, when an object first needs it."""
+
+    def __init__(self, scene, images, reports):
+        self._scene, self._images, self._reports = scene, images, reports
+        self._by_key = {}
+
+    def of(self, material):
+        """The `Shading` of a Blender material, or of None: an empty slot, or one whose material was deleted."""
+        key = None if material is None else original_key(material)
+        if key not in self._by_key:
+            self._by_key[key] = self._read(material)
+        return self._by_key[key]
+
+    def _read(self, material):
+        if material is None:
+            return Shading(self._scene.add_material(DEFAULT))
+        reader = NodeReader(f"material {material.name!r}", self._images, self._reports)
+        read = read_material(material, reader)
+        return Shading(self._scene.add_material(read), reader.uv, material.name)
+
+
+def read_material(material, reader):
+    """The engine's Material of a Blender material."""
+    tree = node_tree(material)
+    if tree is None:
+        return _without_nodes(material).material()
+    surface = output_source(tree, "Surface")
+    if surface is None:
+        reader.warn("it has no output node; black is used instead")
+        return Lobes().material()
+    displacement = output_source(tree, "Displacement")
+    if displacement is not None and displacement.node is not None:
+        reader.warn(f"displacement by node {displacement.node.name!r} is not rendered")
+    return read_closure(surface, reader).material(_absorption(output_source(tree, "Volume"), reader))
+
+
+def _without_nodes(material):
+    return principled(
+        Value(tuple(material.diffuse_color)[:3]),
+        metallic=material.metallic,
+        roughness=material.roughness,
+        specular=material.specular_intensity,
+    )
+
+
+def _absorption(source, reader):
+    """Beer-Lambert coefficient (3,) of what is linked to the Volume socket, as Cycles: density * (1 - colour)."""
+    if source is None or source.node is None:
+        return (0.0, 0.0, 0.0)
+    if source.type != "VOLUME_ABSORPTION":
+        reader.not_understood(source, "no volume")
+        return (0.0, 0.0, 0.0)
+    color = reader.color(source.input("Color")).average
+    return np.maximum(reader.number(source.input("Density")) * (1.0 - color), 0.0)

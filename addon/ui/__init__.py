@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels, a file a subject, and which of Blender's own panels are shown when Conic is the render engine."""
+
+from . import light, object_shape, render_settings, standard_panels
+
+_MODULES = (standard_panels, render_settings, object_shape, light)
+
+
+def register():
+    for module in _MODULES:
+        module.register()
+
+
+def unregister():
+    for module in reversed(_MODULES):
+        module.unregister()

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The panel of an object: as which shape to render it, what it was taken as, and why."""
+
+import textwrap
+
+import bpy
+
+from ..properties import PRIMITIVES
+from ..sync.objects import describe
+from .base import PropertiesPanel
+
+SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+
+NAMES = {identifier: name for identifier, name, _ in PRIMITIVES}
+
+#: What objects were taken as, by session_uid, until anything changes: a panel is drawn far more often.
+_described = {}
+
+
+@bpy.app.handlers.persistent
+def _forget(*_arguments):
+    _described.clear()
+
+
+def described(obj, depsgraph):
+    """(kind, reason) of an object, read from its mesh at most once after each change."""
+    if obj.session_uid not in _described:
+        _described[obj.session_uid] = describe(obj, depsgraph)
+    return _described[obj.session_uid]
+
+
+class CONIC_OBJECT_PT_shape(PropertiesPanel, bpy.types.Panel):
+    bl_label = "Conic"
+    bl_context = "object"
+
+    @classmethod
+    def poll(cls, context):
+        return context.object and context.object.type in SHAPED and super().poll(context)
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(context.object.conic, "primitive")
+        kind, reason = described(context.object, context.evaluated_depsgraph_get())
+        column = layout.column(align=True)
+        column.label(text=f"Rendered as: {NAMES.get(kind, kind)}", icon="INFO")
+        column.active = False
+        for line in textwrap.wrap(reason, max(24, context.region.width // 9)):
+            column.label(text=line)
+
+
+_HANDLERS = ("depsgraph_update_post", "frame_change_post", "load_post", "undo_post", "redo_post")
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CONIC_OBJECT_PT_shape,))
+
+
+def register():
+    _register_classes()
+    for name in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(_forget)
+
+
+def unregister():
+    for name in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(_forget)
+    _unregister_classes()
+    _forget()

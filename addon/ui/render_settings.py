@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels of the Render tab."""
+
+import bpy
+
+from .base import PropertiesPanel
+
+
+class RenderPanel(PropertiesPanel):
+    bl_context = "render"
+
+
+class CONIC_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
+    bl_label = "Sampling"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column(align=True)
+        column.prop(context.scene.conic, "preview_samples")
+        column.prop(context.scene.conic, "samples")
+
+
+class CONIC_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
+    bl_label = "Light Paths"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column(align=True)
+        column.prop(context.scene.conic, "max_depth")
+        column.prop(context.scene.conic, "weight_cutoff")
+        layout.prop(context.scene.conic, "shadows")
+
+
+class CONIC_RENDER_PT_shapes(RenderPanel, bpy.types.Panel):
+    bl_label = "Shapes"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(context.scene.conic, "recognise")
+
+
+class CONIC_RENDER_PT_film(RenderPanel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(context.scene.render, "film_transparent", text="Transparent")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (CONIC_RENDER_PT_sampling, CONIC_RENDER_PT_light_paths, CONIC_RENDER_PT_shapes, CONIC_RENDER_PT_film)
+)

@@ -1,0 +1,185 @@
+"""The interface: settings that are promises, panels shown for Conic, and that nothing of it stays behind."""
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+
+from addon.ui import light, object_shape, render_settings, standard_panels
+
+RENDER_PANELS = [panel for name, panel in vars(render_settings).items() if name.startswith("CONIC_")]
+
+DEFAULTS = {
+    "samples": 16,
+    "preview_samples": 4,
+    "max_depth": 8,
+    "weight_cutoff": 1 / 512,
+    "shadows": "TINTED",
+    "recognise": "ALWAYS",
+}
+
+
+class Layout:
+    """Stands for Blender's UILayout, which needs a window: refuses what the data does not have."""
+
+    def __init__(self):
+        self.shown, self.text = [], []
+
+    def prop(self, data, name, text=None, expand=False):
+        assert name in data.bl_rna.properties, f"{data} has no {name}"
+        self.shown.append(name)
+
+    def label(self, text, icon="NONE"):
+        self.text.append(text)
+
+    def row(self, align=False):
+        return self
+
+    column = row
+
+
+def draw(panel, **context):
+    """What a panel shows."""
+    layout = Layout()
+    panel.draw(SimpleNamespace(layout=layout), SimpleNamespace(**context))
+    return layout
+
+
+def conic_panels():
+    """The names of Conic's own panels that Blender knows."""
+    return {name for name in dir(bpy.types) if name.startswith("CONIC_") and "_PT_" in name}
+
+
+def test_settings_have_the_promised_names_and_defaults():
+    settings = bpy.context.scene.conic
+    assert {name: getattr(settings, name) for name in DEFAULTS} == pytest.approx(DEFAULTS)
+    own = {p.identifier for p in settings.bl_rna.properties} - {"rna_type", "name"}
+    assert own == set(DEFAULTS)
+
+
+def test_objects_can_be_any_kind():
+    items = bpy.types.Object.bl_rna.properties["conic"].fixed_type.properties["primitive"]
+    assert items.enum_items.keys() == ["AUTO", "MESH", "SPHERE", "CYLINDER", "CONE", "DISC", "PLANE"]
+    assert items.default == "AUTO"
+
+
+@pytest.mark.parametrize("owner", ["scene", "object"])
+def test_every_setting_is_described(owner):
+    data = bpy.context.scene if owner == "scene" else bpy.data.objects.new("any", None)
+    for setting in data.conic.bl_rna.properties:
+        if setting.identifier not in {"rna_type", "name"}:
+            assert setting.description and not setting.description.endswith("."), setting.identifier
+            for item in getattr(setting, "enum_items", ()):
+                assert item.description, (setting.identifier, item.identifier)
+
+
+def changed_ids(change):
+    """The types of the datablocks that Blender's depsgraph says are changed after `change()`."""
+    bpy.context.view_layer.update()
+    seen = set()
+
+    def note(_scene, depsgraph):
+        seen.update(type(update.id).__name__ for update in depsgraph.updates)
+
+    bpy.app.handlers.depsgraph_update_post.append(note)
+    try:
+        change()
+        bpy.context.view_layer.update()
+    finally:
+        bpy.app.handlers.depsgraph_update_post.remove(note)
+    return seen
+
+
+@pytest.mark.parametrize(
+    "name, value", [("samples", 2), ("weight_cutoff", 0.5), ("shadows", "OPAQUE"), ("recognise", "NEVER")]
+)
+def test_scene_setting_from_python_reaches_the_depsgraph(name, value):
+    assert "Scene" in changed_ids(lambda: setattr(bpy.context.scene.conic, name, value))
+
+
+def test_object_setting_from_python_reaches_the_depsgraph():
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    assert "Object" in changed_ids(lambda: setattr(bpy.context.object.conic, "primitive", "MESH"))
+
+
+@pytest.mark.parametrize("panel", RENDER_PANELS, ids=lambda panel: panel.__name__)
+def test_render_panels_show_settings(panel):
+    assert draw(panel, scene=bpy.context.scene).shown
+
+
+def test_render_panels_show_every_setting():
+    shown = {name for panel in RENDER_PANELS for name in draw(panel, scene=bpy.context.scene).shown}
+    assert shown >= set(DEFAULTS) | {"film_transparent"}
+
+
+@pytest.mark.parametrize("kind", ["POINT", "SUN", "SPOT", "AREA"])
+def test_light_panel_shows_type_color_and_power(kind):
+    drawn = draw(light.CONIC_LIGHT_PT_light, light=bpy.data.lights.new("light", kind))
+    assert {"type", "color", "energy"} <= set(drawn.shown)
+    assert bool(drawn.text) == (kind in {"SPOT", "AREA"}), "what is not done is said"
+
+
+def described():
+    """What the panel of the active object shows."""
+    return draw(
+        object_shape.CONIC_OBJECT_PT_shape,
+        object=bpy.context.object,
+        region=SimpleNamespace(width=300),
+        evaluated_depsgraph_get=bpy.context.evaluated_depsgraph_get,
+    )
+
+
+def test_object_panel_says_what_it_was_taken_as_and_forgets_when_that_changes():
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    bpy.context.object.data.shade_smooth()
+    first = described()
+    assert first.shown == ["primitive"]
+    assert "Sphere" in first.text[0] and len(first.text) > 1
+    bpy.context.object.data.vertices[100].co *= 1.5
+    bpy.context.object.data.update()
+    bpy.context.view_layer.update()
+    assert "Mesh" in described().text[0]
+
+
+@pytest.mark.parametrize("engine, shown", [("CONIC", True), ("BLENDER_WORKBENCH", False)])
+def test_own_panels_are_there_for_conic_only(engine, shown):
+    bpy.context.scene.render.engine = engine
+    for panel in RENDER_PANELS:
+        assert panel.poll(bpy.context) == shown
+
+
+def shown_panels():
+    """The names of Blender's own panels that are shown for Conic."""
+    return {panel.__name__ for panel in standard_panels.standard_panels() if "CONIC" in panel.COMPAT_ENGINES}
+
+
+def test_standard_panels_are_shown():
+    shown = shown_panels()
+    assert standard_panels.BORROWED <= shown
+    assert {
+        "RENDER_PT_output",
+        "RENDER_PT_format",
+        "RENDER_PT_color_management",
+        "DATA_PT_lens",
+        "DATA_PT_camera",
+        "DATA_PT_context_light",
+        "WORLD_PT_context_world",
+        "MATERIAL_PT_custom_props",
+    } <= shown
+    assert not shown & standard_panels.REFUSED
+    assert not [name for name in shown if "freestyle" in name.lower()]
+
+
+def test_nothing_stays_behind_and_it_can_come_back(registered):
+    before = conic_panels()
+    for _ in range(2):
+        registered.unregister()
+        try:
+            assert not hasattr(bpy.types.Scene, "conic") and not hasattr(bpy.types.Object, "conic")
+            assert not conic_panels() and not hasattr(bpy.types, "CONIC_MT_add")
+            assert not shown_panels()
+            assert object_shape._forget not in bpy.app.handlers.depsgraph_update_post
+        finally:
+            registered.register()
+    assert conic_panels() == before and len(before) >= 6
+    assert bpy.context.scene.conic.samples == 16
