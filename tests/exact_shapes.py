@@ -28,7 +28,7 @@ def local_points(part, points: np.ndarray) -> np.ndarray:
 
 
 def distance(part, points: np.ndarray) -> np.ndarray:
-    """(k,): how far the points are off the part's surface (off its cylinder or cone where they are beyond its ends)."""
+    """(k,): how far the points are off the part's surface, or beyond its ends."""
     x, y, z = local_points(part, points).T
     if part.kind == "SPHERE":
         return np.abs(np.sqrt(x * x + y * y + z * z) - part.radius)
@@ -40,7 +40,7 @@ def distance(part, points: np.ndarray) -> np.ndarray:
 
 
 def normals(part, points: np.ndarray) -> np.ndarray:
-    """(k, 3): the outward normals at (the feet of) the points, unit."""
+    """(k, 3): the outward unit normals at points near the surface; zero in the middle, where there is none."""
     x, y, z = local_points(part, points).T
     if part.kind == "DISC":
         local = np.stack([0 * x, 0 * x, 1 + 0 * x], 1)
@@ -48,9 +48,10 @@ def normals(part, points: np.ndarray) -> np.ndarray:
         local = np.stack([x, y, z], 1)
     else:
         base, apex = radii(part)
-        rim = np.maximum(np.hypot(x, y), 1e-30)
-        local = np.stack([x / rim, y / rim, 0 * z + (base - apex) / part.length], 1)
-    return local / np.linalg.norm(local, axis=1, keepdims=True) @ frame_of(part).T
+        rim = np.hypot(x, y)
+        slope = (base - apex) / part.length
+        local = np.stack([x, y, slope * rim], 1) * (rim > 1e-6 * max(base, apex))[:, None]
+    return local / np.maximum(np.linalg.norm(local, axis=1, keepdims=True), 1e-30) @ frame_of(part).T
 
 
 def mesh_uv(part, points: np.ndarray, inside: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

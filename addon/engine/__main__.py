@@ -51,15 +51,11 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _parse(arguments):
-    parser = _Parser(
-        prog="python -m addon.engine", description="Render an NFF scene with Conic.", allow_abbrev=False
-    )
+    parser = _Parser(prog="python -m addon.engine", description="Render an NFF scene with Conic.", allow_abbrev=False)
     parser.add_argument("scene", metavar="SCENE.nff")
     parser.add_argument("-o", "--output", required=True, metavar="OUT", help="the picture, .png or .exr")
     size = _whole_number(1, LARGEST_SIDE)
-    parser.add_argument(
-        "--size", nargs=2, type=size, metavar=("W", "H"), help="pixels; else the scene's resolution"
-    )
+    parser.add_argument("--size", nargs=2, type=size, metavar=("W", "H"), help="pixels; else the scene's resolution")
     samples = _whole_number(1, LARGEST_SAMPLES)
     parser.add_argument("--samples", type=samples, metavar="N", help="rays per pixel (1: through its centre)")
     depth = _whole_number(1, LARGEST_DEPTH)
@@ -96,9 +92,7 @@ def _run(options, progress):
     file = read_nff(options.scene)
     size = options.size or (STRICT_SIZE if options.strict else (file.width, file.height))
     if max(size) > LARGEST_SIDE:
-        raise ConicError(
-            f"the picture is {size[0]} x {size[1]}, expected at most {LARGEST_SIDE} a side; use --size"
-        )
+        raise ConicError(f"the picture is {size[0]} x {size[1]}, expected at most {LARGEST_SIDE} a side; use --size")
     file = file.resized(*size)
     read_seconds = time.perf_counter() - begun
     pixels, statistics, warnings = _render(file, _settings(options), progress)

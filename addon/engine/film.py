@@ -30,8 +30,8 @@ def sample_offset(sample):
 class Film:
     """Pixels being summed up sample by sample, tile by tile.
 
-    `width`, `height`: of the whole frame; `border` (x, y, width, height): the part that is rendered. With `corner_rays` the
-    film has a row and a column more, and a pixel is the mean of its four corners.
+    `width`, `height`: of the whole frame; `border` (x, y, width, height): the part that is rendered. With
+    `corner_rays` the film has a row and a column more, and a pixel is the mean of its four corners.
     """
 
     def __init__(self, device, width, height, *, border=None, samples=1, corner_rays=False, attachments=1):
@@ -70,9 +70,7 @@ class Film:
         """A tile was drawn in `seconds`: go on to the next, of a size that takes about TILE_SECONDS."""
         pixels = tile.rectangle[2] * tile.rectangle[3]
         wanted = pixels * TILE_SECONDS / max(seconds, 1e-6)
-        self._pixels_per_tile = (
-            int(np.clip(wanted, self._pixels_per_tile / 4, self._pixels_per_tile * 4)) or 1
-        )
+        self._pixels_per_tile = int(np.clip(wanted, self._pixels_per_tile / 4, self._pixels_per_tile * 4)) or 1
         self._x += tile.rectangle[2]
         if self._x >= self.width:
             self._x, self._y = 0, self._y + self._band

@@ -18,9 +18,7 @@ def check_suffix(path):
     module is missing."""
     suffix = Path(path).suffix.lower()
     if suffix not in _MODULES:
-        raise ConicError(
-            f"{path}: pictures are written as .png or .exr, not as {suffix or 'a name without suffix'}"
-        )
+        raise ConicError(f"{path}: pictures are written as .png or .exr, not as {suffix or 'a name without suffix'}")
     _module(suffix)
     return suffix
 
@@ -109,6 +107,4 @@ def _read_exr(path):
         pixels = np.asarray(channels.get("RGBA", channels.get("RGB", channels.get("Y"))).pixels, np.float32)
     if pixels.ndim == 2:
         pixels = np.repeat(pixels[..., None], 3, axis=-1)
-    return (
-        pixels if pixels.shape[-1] == 4 else np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)
-    )
+    return pixels if pixels.shape[-1] == 4 else np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)

@@ -1,11 +1,12 @@
 """The one table of GPU records: numpy dtype, GLSL struct and GLSL reader are all made from it.
 
-A record is a sequence of fields that fill whole RGBA32F texels; no field straddles two texels. Records lie one after the
-other in a data texture of fixed width, several small record types may share one texture, each from a first texel of its own.
-The same description gives the uniform block `Frame`, whose std140 layout is the same sequence of four-float groups.
+A record is a sequence of fields that fill whole RGBA32F texels; no field straddles two texels. Records lie one after
+the other in a data texture of fixed width, several small record types may share one texture, each from a first texel
+of its own. The same description gives the uniform block `Frame`, whose std140 layout is the same sequence of
+four-float groups.
 
-Integers are stored as float values, which is exact below 2^24 and survives every driver (bit patterns may not). An index that
-may grow past that is stored in two fields, see `split_index`.
+Integers are stored as float values, which is exact below 2^24 and survives every driver (bit patterns may not). An
+index that may grow past that is stored in two fields, see `split_index`.
 """
 
 from dataclasses import dataclass
@@ -59,9 +60,7 @@ class Record:
     @property
     def dtype(self):
         """The numpy dtype of one record; all members are float32."""
-        return np.dtype(
-            [(f.name, np.float32) if f.size == 1 else (f.name, np.float32, (f.size,)) for f in self.fields]
-        )
+        return np.dtype([(f.name, np.float32) if f.size == 1 else (f.name, np.float32, (f.size,)) for f in self.fields])
 
     @property
     def struct_name(self):
@@ -305,7 +304,8 @@ def split_index(index):
 
 
 def pack_leaf(kind, count, index_high):
-    """The `leaf` field of a node: kind, number of primitives and the high part of the index (below 2^16) in one number."""
+    """The `leaf` field of a node: kind, number of primitives and the high part of the index (below 2^16) in one
+    number."""
     return kind + (np.asarray(count) << _KIND_BITS) + (np.asarray(index_high) << (_KIND_BITS + _COUNT_BITS))
 
 

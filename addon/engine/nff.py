@@ -166,9 +166,7 @@ class _Materials:
         records.refuse(
             no_index & (values[:, 6] > 0.0),
             rows,
-            lambda i: (
-                f"the index of refraction is {values[i, 7]:g} for T {values[i, 6]:g}, expected one above 0"
-            ),
+            lambda i: f"the index of refraction is {values[i, 7]:g} for T {values[i, 6]:g}, expected one above 0",
         )
         values[no_index, 7] = 1.0
         return values

@@ -41,9 +41,7 @@ _POLYGON = {"p": 3, "pp": 6}  # numbers per vertex
 LARGEST = 1e18
 SMALLEST = 1e-18
 
-_CHUNK = (
-    1 << 24
-)  # bytes taken apart at once: bounds the memory of the words, which is ten times that of the numbers
+_CHUNK = 1 << 24  # bytes taken apart at once: bounds the memory of the words, which is ten times that of the numbers
 _COMMENT = re.compile(rb"#[^\r\n]*")
 
 
@@ -78,9 +76,7 @@ class Records:
 
     def error(self, row, message):
         """An NffError at the line where record `row` begins; after the last record at the file's end."""
-        line, _ = (
-            _locate(self.path, self.start[row] + row) if row < len(self) else (_last_line(self.path), "")
-        )
+        line, _ = _locate(self.path, self.start[row] + row) if row < len(self) else (_last_line(self.path), "")
         return NffError(f"{self.path}:{line}: {message}")
 
     def refuse(self, bad, rows, message):
@@ -93,9 +89,7 @@ class Records:
     def _number_error(self, index):
         row = int(np.searchsorted(self.start, index, side="right")) - 1
         line, word = _locate(self.path, index + row + 1)
-        return NffError(
-            f"{self.path}:{line}: the number {word} is not finite, or larger than {LARGEST:g} in size"
-        )
+        return NffError(f"{self.path}:{line}: the number {word} is not finite, or larger than {LARGEST:g} in size")
 
 
 def read_records(path):

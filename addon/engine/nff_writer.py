@@ -126,9 +126,7 @@ def _triangles(shape, material, index):
     both ways."""
     transmits = any(material.transmit)
     one_sided = shape.one_sided != 0
-    _refuse(
-        transmits and one_sided.any(), f"material {index}: a triangle that transmits light but has one side"
-    )
+    _refuse(transmits and one_sided.any(), f"material {index}: a triangle that transmits light but has one side")
     p, n = (np.stack([getattr(shape, f"{letter}{i}") for i in range(3)], axis=1) for letter in "pn")
     if not transmits:
         double = ~one_sided
@@ -141,7 +139,5 @@ def _triangles(shape, material, index):
 def _lines(form, *columns):
     """One record of the form `form` for each row of the columns side by side; repr gives the fewest digits
     that suffice."""
-    values = np.concatenate(
-        [np.reshape(c, (len(c), c[:1].size or 1)) for c in columns], axis=1, dtype=np.float64
-    )
+    values = np.concatenate([np.reshape(c, (len(c), c[:1].size or 1)) for c in columns], axis=1, dtype=np.float64)
     return (form * len(values)) % tuple(values.ravel().tolist())

@@ -36,7 +36,5 @@ def check_writable(path):
         raise ConicError(f"{path}: is a folder, expected the name of a file")
     if not target.parent.is_dir():
         raise ConicError(f"{path}: the folder {target.parent} does not exist")
-    if not os.access(target.parent, os.W_OK | os.X_OK) or (
-        target.exists() and not os.access(target, os.W_OK)
-    ):
+    if not os.access(target.parent, os.W_OK | os.X_OK) or (target.exists() and not os.access(target, os.W_OK)):
         raise ConicError(f"{path}: cannot be written: permission denied")

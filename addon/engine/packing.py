@@ -1,6 +1,8 @@
-"""From a `Scene` to the arrays that go to the GPU: trees, records in data textures, and where each kind of record begins.
+"""From a `Scene` to the arrays that go to the GPU: trees, records in data textures, and where each kind of record
+begins.
 
-Nothing here draws. Lengths become relative to an origin near the camera, so that float32 keeps its digits where people look.
+Nothing here draws. Lengths become relative to an origin near the camera, so that float32 keeps its digits where
+people look.
 """
 
 import time
@@ -22,8 +24,9 @@ _BOX_PADDING_ABSOLUTE = 1e-20
 
 @dataclass
 class PackedScene:
-    """What a session uploads. `textures`: float32 (height, width, 4) by name. `frame`: values of the `Frame` record that
-    depend on the scene alone. `features` and `constants`: of the shader. `origin` (3,): what positions are relative to."""
+    """What a session uploads. `textures`: float32 (height, width, 4) by name. `frame`: values of the `Frame` record
+    that depend on the scene alone. `features` and `constants`: of the shader. `origin` (3,): what positions are
+    relative to."""
 
     origin: np.ndarray
     textures: dict
@@ -62,8 +65,8 @@ def pack(scene, max_texture_size):
 
 
 def scene_origin(scene):
-    """The point (3,) that positions are taken relative to: the camera's, rounded to a grid much coarser than the scene, so
-    that it is exactly 0 for scenes around 0 and stays put while the camera moves."""
+    """The point (3,) that positions are taken relative to: the camera's, rounded to a grid much coarser than the
+    scene, so that it is exactly 0 for scenes around 0 and stays put while the camera moves."""
     eye = np.asarray(scene.camera.matrix, np.float64)[:3, 3]
     corners = [eye]
     for _, part in scene.shapes.kinds():
@@ -156,7 +159,8 @@ class _Packer:
     # Trees
 
     def _instances(self):
-        """The upper tree and the two instance records in the order of its leaves; (None, None) and None without instances."""
+        """The upper tree and the two instance records in the order of its leaves; (None, None) and None without
+        instances."""
         if self.world_only:
             return None, None
         placed = [i for i in self.scene.instances if id(i.geometry) in self.index]
@@ -174,9 +178,7 @@ class _Packer:
         bounds = np.array([t.tree.bounds for t in self.trees], np.float64).reshape(-1, 2, 3)
         lower, upper = _moved_boxes(bounds[which], matrices)
         top = bvh.build(lower, upper, leaf_size=1)
-        return self._instance_records(
-            matrices[top.order], which[top.order], np.array(first)[top.order], top
-        ), top
+        return self._instance_records(matrices[top.order], which[top.order], np.array(first)[top.order], top), top
 
     def _check_matrices(self, matrices, placed):
         bad = ~np.isfinite(matrices).all(axis=(1, 2))
@@ -184,24 +186,21 @@ class _Packer:
             bad |= np.linalg.det(np.where(np.isfinite(matrices), matrices, 0.0)[:, :3, :3]) == 0.0
         if bad.any():
             which = int(np.argmax(bad)) - (len(matrices) - len(placed))
-            raise SceneError(
-                f"instance {placed[which].name!r} has a scale of 0 or a matrix that is not finite"
-            )
+            raise SceneError(f"instance {placed[which].name!r} has a scale of 0 or a matrix that is not finite")
 
     def _material_block(self, instance):
         """Index of the material record of the instance's slot 0; instances with the same materials share a block."""
         slots = self.trees[self.index[id(instance.geometry)]].slots
         if slots > len(instance.materials):
             raise SceneError(
-                f"instance {instance.name!r} has {len(instance.materials)} materials, its geometry uses slot {slots - 1}"
+                f"instance {instance.name!r} has {len(instance.materials)} materials, its geometry uses slot "
+                f"{slots - 1}"
             )
         block = tuple(instance.materials)
         if block not in self._blocks:
             count = len(self.scene.materials)
             if max(block) >= max(count, 1) or min(block) < 0:
-                raise SceneError(
-                    f"instance {instance.name!r} uses material {max(block)}, the scene has {count}"
-                )
+                raise SceneError(f"instance {instance.name!r} uses material {max(block)}, the scene has {count}")
             if len(block) == 1:
                 return block[0]
             self._blocks[block] = len(self.materials)
@@ -231,9 +230,7 @@ class _Packer:
         if top is not None:
             nodes.append(_node_records(top, 0, {0: 0}, {0: _INSTANCE}))
         for start, geometry in zip(starts, self.trees, strict=True):
-            nodes.append(
-                _node_records(geometry.tree, int(start), dict(bases), {label: label for label in bases})
-            )
+            nodes.append(_node_records(geometry.tree, int(start), dict(bases), {label: label for label in bases}))
             for label, (hit, _) in geometry.records.items():
                 bases[label] += len(hit)
         self.texels["nodes"] = _texels(np.concatenate(nodes) if nodes else layout.NODE.zeros(1))
@@ -242,9 +239,7 @@ class _Packer:
         for label, cls in enumerate(BY_KIND):
             parts = [t.records[label] for t in self.trees if label in t.records]
             if parts:
-                for record, arrays in zip(
-                    (cls.record, cls.surface_record), zip(*parts, strict=True), strict=True
-                ):
+                for record, arrays in zip((cls.record, cls.surface_record), zip(*parts, strict=True), strict=True):
                     self.texels[record.texture] = _texels(np.concatenate(arrays))
 
     # What is few
@@ -266,9 +261,7 @@ class _Packer:
 
     def _check_slots(self, material, what):
         if len(material) and (material.max() >= len(self.materials) or material.min() < 0):
-            raise SceneError(
-                f"a {what} uses material {int(material.max())}, the scene has {len(self.scene.materials)}"
-            )
+            raise SceneError(f"a {what} uses material {int(material.max())}, the scene has {len(self.scene.materials)}")
 
     def _materials(self):
         if len(self.scene.shapes):
@@ -344,9 +337,7 @@ class _Packer:
             features.add("HAS_PLANE")
         if not self.world_only:
             features.add("HAS_INSTANCES")
-        if any(
-            max(m.diffuse_image, m.reflect_image, m.transmit_image, m.glow_image) >= 0 for m in self.materials
-        ):
+        if any(max(m.diffuse_image, m.reflect_image, m.transmit_image, m.glow_image) >= 0 for m in self.materials):
             features.add("HAS_IMAGES")
         if self.scene.world.image >= 0:
             features.add("HAS_WORLD_IMAGE")
@@ -379,7 +370,8 @@ def _texels(records):
 
 
 def _node_records(tree, node_start, primitive_starts, kinds):
-    """GPU nodes of a tree whose nodes begin at `node_start` and whose primitives of each label begin at a start of their own."""
+    """GPU nodes of a tree whose nodes begin at `node_start` and whose primitives of each label begin at a start of
+    their own."""
     labels = np.arange(max(primitive_starts) + 1)
     starts = np.array([primitive_starts.get(int(label), 0) for label in labels], np.int64)
     numbers = np.array([kinds.get(int(label), 0) for label in labels], np.int64)
@@ -415,7 +407,8 @@ def _moved_boxes(bounds, matrices):
 
 
 def _reduced(pixels, limit, names, warnings):
-    """The images, the largest halved again and again until all their texels fit `limit`; each halving is reported once."""
+    """The images, the largest halved again and again until all their texels fit `limit`; each halving is reported
+    once."""
     pixels, reduced = list(pixels), {}
     while sum(p.shape[0] * p.shape[1] for p in pixels) > limit:
         largest = max(range(len(pixels)), key=lambda i: pixels[i].size)

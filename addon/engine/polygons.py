@@ -73,9 +73,7 @@ def _flattened(points):
     off = np.ptp(height, axis=1) / 2.0
     _refuse(
         off > PLANARITY * size + ROUNDING * magnitude,
-        lambda i: (
-            f"the polygon is not planar: its vertices leave a plane by {off[i]:.3g} of its size {size[i]:.3g}"
-        ),
+        lambda i: f"the polygon is not planar: its vertices leave a plane by {off[i]:.3g} of its size {size[i]:.3g}",
     )
     e0 = any_perpendicular(normal)
     frame = np.stack([e0, np.cross(normal, e0)], axis=-1)

@@ -1,7 +1,7 @@
 """The plain data that is the renderer's only input: no bpy, no GPU, only dataclasses and numpy arrays.
 
-Right-handed, Z up, metres, scene-linear colour, images bottom row first. World coordinates may be large: they are kept in
-float64 and taken relative to an origin near the camera when they are packed.
+Right-handed, Z up, metres, scene-linear colour, images bottom row first. World coordinates may be large: they are
+kept in float64 and taken relative to an origin near the camera when they are packed.
 """
 
 from dataclasses import dataclass, field
@@ -23,8 +23,8 @@ class LightKind(IntEnum):
 class Light:
     """A light without extent.
 
-    `color` (3,) is the radiance that a white diffuse surface facing the light returns: for POINT at distance 1. The class
-    methods make it from physical units.
+    `color` (3,) is the radiance that a white diffuse surface facing the light returns: for POINT at distance 1. The
+    class methods make it from physical units.
     """
 
     kind: LightKind
@@ -33,8 +33,8 @@ class Light:
 
     @classmethod
     def point(cls, position, watts, color=(1.0, 1.0, 1.0)):
-        """A point light of `watts` as Blender counts them: radiant intensity watts / 4 pi per steradian, divided by pi as a
-        diffuse surface does, and by Blender's further pi for lights of a radius that goes to 0: watts / (4 pi^2)."""
+        """A point light of `watts` as Blender counts them: watts / 4 pi per steradian; a white diffuse surface returns
+        the irradiance divided by pi."""
         return cls(LightKind.POINT, tuple(position), tuple(np.multiply(color, watts / (4.0 * np.pi**2))))
 
     @classmethod
@@ -57,9 +57,10 @@ class Light:
 class Material:
     """The paper's colour class (3.1.1): glow g, reflect r, transmit t, diffuse d, index n0, and absorption.
 
-    Colours are scene-linear RGB; each `*_image` is the index of an image in `Scene.images` that multiplies the colour by the
-    surface's uv, -1 for none. With `fresnel` the mirror ray has weight r F, the refracted one t (1 - F), and the diffuse
-    share is d (1 - F), F the exact unpolarised reflectance; without it the shares are the constants, as NFF has them.
+    Colours are scene-linear RGB; each `*_image` is the index of an image in `Scene.images` that multiplies the colour
+    by the surface's uv, -1 for none. With `fresnel` the mirror ray has weight r F, the refracted one t (1 - F), and
+    the diffuse share is d (1 - F), F the exact unpolarised reflectance; without it the shares are the constants, as
+    NFF has them.
     """
 
     diffuse: tuple = (0.8, 0.8, 0.8)
@@ -141,8 +142,9 @@ class World:
 class Camera:
     """A camera that looks along its -Z with Y up, as Blender's.
 
-    `matrix` (4, 4): camera to world, without scale. `window` (left, right, bottom, top): the picture's edges at distance 1 in
-    front of the eye, or in world units when `orthographic`. `clip` (start, end): distances along the view.
+    `matrix` (4, 4): camera to world, without scale. `window` (left, right, bottom, top): the picture's edges at
+    distance 1 in front of the eye, or in world units when `orthographic`. `clip` (start, end): distances along the
+    view.
     """
 
     matrix: np.ndarray
@@ -152,8 +154,8 @@ class Camera:
 
     @classmethod
     def look_at(cls, eye, target, up=(0.0, 0.0, 1.0), angle=45.0, aspect=1.0, clip=(0.0, 1e30)):
-        """A perspective camera at `eye` towards `target`; `angle` in degrees from the bottom to the top row, `aspect` the
-        picture's width over height. Raises SceneError when `up` is along the view."""
+        """A perspective camera at `eye` towards `target`; `angle` in degrees from the bottom to the top row, `aspect`
+        the picture's width over height. Raises SceneError when `up` is along the view."""
         matrix = _look_at_matrix(eye, target, up)
         half = float(np.tan(np.radians(angle) / 2.0))
         return cls(matrix, (-half * aspect, half * aspect, -half, half), False, clip)
@@ -169,12 +171,10 @@ def _look_at_matrix(eye, target, up):
     eye, target, up = (np.asarray(v, np.float64) for v in (eye, target, up))
     back = eye - target
     right = np.cross(up, back)
-    if not np.isfinite(right).all() or not np.linalg.norm(right) > 1e-12 * np.linalg.norm(
-        up
-    ) * np.linalg.norm(back):
+    if not np.isfinite(right).all() or not np.linalg.norm(right) > 1e-12 * np.linalg.norm(up) * np.linalg.norm(back):
         raise SceneError(
-            f"camera: from {tuple(eye)} to {tuple(target)} with up {tuple(up)} gives no view; the two points must differ "
-            "and up must not lie along the view"
+            f"camera: from {tuple(eye)} to {tuple(target)} with up {tuple(up)} gives no view; the two points must "
+            "differ and up must not lie along the view"
         )
     back, right = back / np.linalg.norm(back), right / np.linalg.norm(right)
     matrix = np.eye(4)
@@ -214,8 +214,8 @@ class Geometry:
 
 @dataclass(frozen=True)
 class Instance:
-    """A geometry in the world: `matrix` (4, 4) float64 object to world, any invertible affine; `materials` the index into
-    `Scene.materials` for each material slot."""
+    """A geometry in the world: `matrix` (4, 4) float64 object to world, any invertible affine; `materials` the index
+    into `Scene.materials` for each material slot."""
 
     geometry: Geometry
     matrix: np.ndarray
@@ -227,8 +227,9 @@ class Instance:
 class Scene:
     """Everything a picture is made from.
 
-    Shapes that keep their form (see `Similarity`) go straight into `shapes`, one geometry in world space whose material slots
-    are the scene's materials. Meshes and stretched shapes are instances. `planes` is a list of infinite planes.
+    Shapes that keep their form (see `Similarity`) go straight into `shapes`, one geometry in world space whose
+    material slots are the scene's materials. Meshes and stretched shapes are instances. `planes` is a list of
+    infinite planes.
     """
 
     camera: Camera | None = None

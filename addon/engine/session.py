@@ -42,9 +42,7 @@ class Session:
         self._seconds["build"] = self._packed.statistics["seconds"]["build"]
         with self._timed("upload"):
             self._release_textures()
-            self._textures = {
-                name: self.device.texture(texels) for name, texels in self._packed.textures.items()
-            }
+            self._textures = {name: self.device.texture(texels) for name, texels in self._packed.textures.items()}
         self._gpu_bytes = sum(texels.nbytes for texels in self._packed.textures.values())
         self._counts = settings.count_rays or settings.may_drop
         with self._timed("compile"):
@@ -72,9 +70,7 @@ class Session:
             raise SceneError(f"a picture of {width} x {height} pixels has no pixels")
         limit = self.device.max_texture_size - 1
         if max(width, height) > limit:
-            raise SceneError(
-                f"a picture of {width} x {height} pixels is larger than this device's {limit} x {limit}"
-            )
+            raise SceneError(f"a picture of {width} x {height} pixels is larger than this device's {limit} x {limit}")
         self.camera = camera or self.camera
         if self._film:
             self._film.release()
@@ -88,9 +84,7 @@ class Session:
             attachments=3 if self._counts else 1,
         )
         self._reported_drops = False
-        with self._timed(
-            "compile"
-        ):  # drivers leave much of their work to the first draw: make it a small one
+        with self._timed("compile"):  # drivers leave much of their work to the first draw: make it a small one
             self._draw_outside()
 
     def step(self, seconds):
@@ -166,7 +160,8 @@ class Session:
         dropped = int(self._film.counters(2)[0])
         if dropped:
             self.warnings.append(
-                f"{dropped} refracted rays were dropped, the stack holds {self.settings.stack_size}; lower the maximum depth"
+                f"{dropped} refracted rays were dropped, the stack holds {self.settings.stack_size}; "
+                "lower the maximum depth"
             )
 
     def _draw_outside(self):
@@ -219,7 +214,7 @@ class _Timer:
         self._table[self._stage] += time.perf_counter() - self._started
 
 
-class Cancelled(ConicError):
+class CancelledError(ConicError):
     """The caller asked to stop."""
 
 
@@ -227,7 +222,7 @@ def render(scene, width, height, settings=None, *, device=None, progress=None, c
     """Render a scene to a `Picture`.
 
     `device`: where to draw, by default a headless context of its own. `progress(share)` is called some times a second;
-    `cancelled()` returning True raises Cancelled. Raises ConicError.
+    `cancelled()` returning True raises CancelledError. Raises ConicError.
     """
     if device is None:
         from .devices.headless import HeadlessDevice
@@ -241,7 +236,7 @@ def render(scene, width, height, settings=None, *, device=None, progress=None, c
             if progress:
                 progress(session.progress)
             if cancelled and cancelled():
-                raise Cancelled("rendering was stopped")
+                raise CancelledError("rendering was stopped")
         if progress:
             progress(1.0)
         return Picture(session.pixels(), session.statistics(), session.warnings)

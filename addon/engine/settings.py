@@ -9,12 +9,13 @@ from .errors import SceneError
 class Settings:
     """Render settings. Raises SceneError for values out of range.
 
-    `samples`: rays through each pixel; the first goes through its centre. `max_depth`: the eye ray is 1. `weight_cutoff`:
-    rays of a smaller share of the pixel are not followed, 0 follows all. `tinted_shadows`: shadow rays pass through
-    transmitting bodies and take on their colour; otherwise all bodies are opaque to them, as in the paper.
-    `film_transparent`: alpha 0 where the eye sees the sky. `count_rays`: compile the variant of the shader that counts.
-    `corner_rays`: rays through the corners of the pixels, four averaged, one row and column more than pixels.
-    `stack_limit`: the most rays that wait at a time; with more needed, what is dropped is counted and reported.
+    `samples`: rays through each pixel; the first goes through its centre. `max_depth`: the eye ray is 1.
+    `weight_cutoff`: rays of a smaller share of the pixel are not followed, 0 follows all. `tinted_shadows`: shadow
+    rays pass through transmitting bodies and take on their colour; otherwise all bodies are opaque to them, as in the
+    paper. `film_transparent`: alpha 0 where the eye sees the sky. `count_rays`: compile the variant of the shader
+    that counts. `corner_rays`: rays through the corners of the pixels, four averaged, one row and column more than
+    pixels. `stack_limit`: the most rays that wait at a time; with more needed, what is dropped is counted and
+    reported.
     """
 
     samples: int = 1
@@ -33,9 +34,7 @@ class Settings:
             ("stack_limit", 1, 64),
         ):
             if not lowest <= getattr(self, name) <= highest:
-                raise SceneError(
-                    f"{name} is {getattr(self, name)}; it must lie between {lowest} and {highest}"
-                )
+                raise SceneError(f"{name} is {getattr(self, name)}; it must lie between {lowest} and {highest}")
         if not 0.0 <= self.weight_cutoff < 1.0:
             raise SceneError(f"weight_cutoff is {self.weight_cutoff}; it must be at least 0 and less than 1")
 

@@ -6,9 +6,10 @@ A shader file may hold, each on a line of its own,
     #include <record>           the struct and reader of a record of `layout`, once per program
     #ifdef NAME / #ifndef NAME / #else / #endif
 
-Conditions are decided here, so that a program carries, compiles and asks samplers for what it uses only; every name they test
-must be known (`FEATURES`), a misspelt one is an error. Uniforms, samplers and outputs are not declared in the files: devices
-declare them from `ProgramSource`, each in its own way. `origin` finds file and line of a line that a driver complains about.
+Conditions are decided here, so that a program carries, compiles and asks samplers for what it uses only; every name
+they test must be known (`FEATURES`), a misspelt one is an error. Uniforms, samplers and outputs are not declared in
+the files: devices declare them from `ProgramSource`, each in its own way. `origin` finds file and line of a line that
+a driver complains about.
 """
 
 import re
@@ -46,9 +47,9 @@ class ShaderSourceError(Exception):
 class ProgramSource:
     """All that a device needs to build a program that fills the screen.
 
-    `fragment`: GLSL without declarations of uniforms, samplers or outputs. `textures`: names of the data textures, the sampler
-    of `name` is `<name>_data`. `uniform_struct`: GLSL struct `Frame` of the uniform block `frame` ("" for none). `outputs`:
-    names of the vec4 outputs, in the order of the target's attachments.
+    `fragment`: GLSL without declarations of uniforms, samplers or outputs. `textures`: names of the data textures,
+    the sampler of `name` is `<name>_data`. `uniform_struct`: GLSL struct `Frame` of the uniform block `frame` ("" for
+    none). `outputs`: names of the vec4 outputs, in the order of the target's attachments.
     """
 
     name: str
@@ -79,9 +80,7 @@ def program(entry, features=(), constants=None, outputs=("out_color",), folder=S
     `features`: names out of FEATURES that hold. `constants`: name to number, defined at the top.
     Raises ShaderSourceError.
     """
-    return _program(
-        entry, frozenset(features), tuple(sorted((constants or {}).items())), tuple(outputs), str(folder)
-    )
+    return _program(entry, frozenset(features), tuple(sorted((constants or {}).items())), tuple(outputs), str(folder))
 
 
 @cache

@@ -128,12 +128,13 @@ def sharpness(roughness):
 def phong_of(roughness):
     """(weight, exponent) of the lights' highlight that looks like a microfacet lobe of this roughness.
 
-    Blinn's exponent is 2 / alpha^2 - 2 with alpha = roughness^2 (Walter et al. 2007); about the mirror direction that is a
-    quarter as wide, and the peak of D / 4 there, in units of the white diffuse surface, is (n + 8) / 8.
+    Blinn's exponent is n = 2 / alpha^2 - 2 with alpha = roughness^2 (Walter et al. 2007). The angle to the mirror direction is
+    twice the one to the half vector, which makes Phong's exponent n / 4. The peak of pi D / 4, D = (n + 2) / 2 pi there, is
+    (n + 2) / 8 in units of a white diffuse surface.
     """
     alpha = max(float(roughness), 0.05) ** 2
     blinn = max(2.0 / alpha**2 - 2.0, 0.0)
-    return (blinn + 8.0) / 8.0, max(blinn / 4.0, 1.0)
+    return (blinn + 2.0) / 8.0, max(blinn / 4.0, 1.0)
 
 
 def metal(color, roughness):

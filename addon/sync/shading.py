@@ -13,6 +13,7 @@ from .nodes import output_source
 from .textures import NodeReader
 from .values import Value
 
+WHITE = Value((1.0, 1.0, 1.0))
 DEFAULT = Material()  # Blender's grey, for a slot without material
 
 
@@ -59,7 +60,12 @@ def read_material(material, reader):
     displacement = output_source(tree, "Displacement")
     if displacement is not None and displacement.node is not None:
         reader.warn(f"displacement by node {displacement.node.name!r} is not rendered")
-    return read_closure(surface, reader).material(_absorption(output_source(tree, "Volume"), reader))
+    volume = output_source(tree, "Volume")
+    if surface.node is None and volume is not None and volume.node is not None:
+        lobes = Lobes(clear=WHITE)  # a body of volume alone has no surface
+    else:
+        lobes = read_closure(surface, reader)
+    return lobes.material(_absorption(volume, reader))
 
 
 def _without_nodes(material):

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from addon.engine.bvh import MAX_DEPTH, build, refit, sah_cost, statistics, sweep_build
+from addon.engine.bvh.agglomerate import agglomerate
 from addon.engine.bvh.boxes import half_areas, morton_order, spans, take_spans
 from addon.engine.bvh.build import TOP
 from addon.engine.bvh.flatten import flatten
@@ -99,10 +100,10 @@ def check(bvh, lo, hi, label=None, leaf_size=4):
     assert np.array_equal(np.sort(below), np.arange(1, len(bvh))) and np.all(below > parent)
     first = bvh.is_inner[:, 0]
     assert np.array_equal(bvh.child[first, 0], np.flatnonzero(first) + 1)
-    depth = np.ones(len(bvh), int)
-    for inner, above in sorted(zip(below.tolist(), parent.tolist(), strict=True)):
-        depth[inner] = depth[above] + 1
-    assert depth.max() == bvh.depth <= MAX_DEPTH
+    level, depth = np.zeros(1, int), 0
+    while len(level):
+        level, depth = bvh.child[level][bvh.is_inner[level]], depth + 1
+    assert depth == bvh.depth <= MAX_DEPTH
 
     # Boxes contain the primitives as given, and are the union of what is below, no more.
     box = bvh.boxes[node, child][leaf_of].astype(np.float64)
@@ -193,27 +194,26 @@ def test_empty_child_is_missed(seed):
 
 
 def exponential(n, ratio):
+    """(n, 3) points on a diagonal, each `ratio` times as far out as the last."""
     return ratio ** (np.arange(n) - n / 2)[:, None] * np.ones(3)
 
 
+FEW, MANY = exponential(200, 1.5), exponential(20_000, 1.005)
+CUBES = np.arange(30_000)[:, None] ** [0, 0, 3]
+ADVERSARIES = {
+    "identical boxes": (np.zeros((100_000, 3)), np.ones((100_000, 3))),
+    "identical points": (np.full((20_000, 3), 5.0), np.full((20_000, 3), 5.0)),
+    "few exponential points": (FEW, FEW),
+    "many exponential points": (MANY, MANY),
+    "few nested boxes": (-FEW, FEW),
+    "many nested boxes": (-MANY, MANY),
+    "flat boxes": (FEW * [0, 1, 0], FEW * [0, 1, 0.1]),
+    "points on a line": (CUBES, CUBES),
+}
+
+
 @BUILDERS
-@pytest.mark.parametrize(
-    ("lo", "hi"),
-    [
-        pytest.param(np.zeros((100_000, 3)), np.ones((100_000, 3)), id="identical boxes"),
-        pytest.param(np.full((20_000, 3), 5.0), np.full((20_000, 3), 5.0), id="identical points"),
-        pytest.param(exponential(200, 1.5), exponential(200, 1.5), id="points each 1.5 times as far"),
-        pytest.param(
-            exponential(20_000, 1.005), exponential(20_000, 1.005), id="points each 1.005 times as far"
-        ),
-        pytest.param(-exponential(200, 1.5), exponential(200, 1.5), id="nested boxes"),
-        pytest.param(-exponential(20_000, 1.005), exponential(20_000, 1.005), id="many nested boxes"),
-        pytest.param(exponential(300, 1.5) * [0, 1, 0], exponential(300, 1.5) * [0, 1, 0.1], id="on a plane"),
-        pytest.param(
-            np.arange(30_000)[:, None] ** [0, 0, 3], np.arange(30_000)[:, None] ** [0, 0, 3], id="on a line"
-        ),
-    ],
-)
+@pytest.mark.parametrize(("lo", "hi"), ADVERSARIES.values(), ids=ADVERSARIES.keys())
 def test_adversarial(builder, lo, hi):
     bvh = builder(lo, hi)
     check(bvh, lo, hi)
@@ -225,6 +225,16 @@ def test_coincident_boxes_make_a_balanced_tree(builder, n):
     """No chain, and no scattered leaves, where the heuristic cannot tell one split from another."""
     bvh = builder(np.zeros((n, 3)), np.ones((n, 3)))
     assert bvh.depth <= np.ceil(np.log2(n)) + 2
+
+
+@pytest.mark.parametrize("name", ADVERSARIES)
+def test_clustering_takes_few_rounds(name):
+    """Also where each box would rather join the one before, which would rather join the one before that."""
+    lo, hi = (corner.astype(np.float32) for corner in ADVERSARIES[name])
+    span = spans(lo, hi)
+    topology, curve = Topology(half_areas(span)), morton_order(span)
+    agglomerate(take_spans(span, curve), curve.astype(np.int32), topology, 1)
+    assert len(topology.left) == topology.batches[-1].stop and len(topology.batches) < 12 * np.log2(len(lo))
 
 
 @BUILDERS
@@ -281,20 +291,16 @@ def test_quality_against_halving(scene):
 def test_a_far_outlier_does_not_spoil_the_rest():
     """The ground as a huge sphere: the other 30 000 boxes still lie in cells of their own."""
     lo, hi = uniform(30_000, np.random.default_rng(0))
-    alone = sah_cost(build(lo, hi)) * np.prod(build(lo, hi).bounds[1] - build(lo, hi).bounds[0]) ** (2 / 3)
+
+    def cost_of_the_rest(bvh):
+        box, count = bvh.boxes[bvh.is_leaf | bvh.is_inner].astype(np.float64), bvh.count.ravel()
+        x, y, z = (box[:, 1] - box[:, 0]).T
+        area = x * y + y * z + z * x
+        return np.sum((area * np.where(count > 0, 0.5 * count, 1))[area < 10])
+
+    alone = cost_of_the_rest(build(lo, hi))
     lo[-1], hi[-1] = -1e8, 1e8
-    together = build(lo, hi)
-    # The root costs 1 and its far leaf 1/2; what is left, in units of the root's area, is the tree of the rest.
-    node, child = 0, int(np.argmin(together.is_leaf[0]))
-    inner = together.boxes[node, child].astype(np.float64)
-    boxes = together.boxes[1:].astype(np.float64)
-    size = boxes[..., 1, :] - boxes[..., 0, :]
-    area = size[..., 0] * size[..., 1] + size[..., 2] * (size[..., 0] + size[..., 1])
-    count = together.count[1:]
-    rest = 1 + np.sum(area * np.where(count > 0, 0.5 * count, 1)) / (
-        3 * np.prod(inner[1] - inner[0]) ** (2 / 3)
-    )
-    assert together.is_leaf[0].sum() == 1 and rest < 1.1 * alone
+    assert cost_of_the_rest(build(lo, hi)) < 1.1 * alone
 
 
 @SCENES
@@ -308,9 +314,7 @@ def test_refit(scene, seed):
     step = rng.normal(size=lo.shape) * 0.1
     moved = refit(bvh, lo + step, hi + step)
     check(moved, lo + step, hi + step, bvh_labels(bvh))
-    assert (
-        moved.child is bvh.child and moved.order is bvh.order and not np.array_equal(moved.boxes, bvh.boxes)
-    )
+    assert moved.child is bvh.child and moved.order is bvh.order and not np.array_equal(moved.boxes, bvh.boxes)
 
 
 def bvh_labels(bvh):
@@ -336,8 +340,11 @@ def test_cost_by_hand():
 
 
 def slabs(origin, direction, boxes, t_max):
-    """(...) bool, in float32: rays (..., 3) against boxes (..., 2, 3) with the usual shader's slab test, which
-    sorts the planes by minimum and maximum and rounds the far distance up (T. Ize, "Robust BVH Ray Traversal")."""
+    """(...) bool, in float32: rays (..., 3) against boxes (..., 2, 3).
+
+    The usual shader's slab test: it sorts the planes by minimum and maximum and rounds the far distance up
+    (T. Ize, "Robust BVH Ray Traversal", 2013).
+    """
     origin, direction = origin.astype(np.float32), direction.astype(np.float32)
     tiny = np.float32(1e-30)  # stands for a zero, so that no plane gives 0 * inf
     inverse = 1 / np.where(np.abs(direction) < tiny, np.copysign(tiny, direction), direction)
@@ -349,7 +356,7 @@ def slabs(origin, direction, boxes, t_max):
 
 
 def traverse(bvh, origin, direction):
-    """Pairs (ray, primitive) of the leaves that rays reach: all rays at once, a level of the tree at a time."""
+    """(k, 2) rays and primitives of the leaves that they reach: all rays at once, a level at a time."""
     ray, node = np.arange(len(origin)), np.zeros(len(origin), int)
     pairs, levels = [np.empty((0, 2), int)], 0
     while len(ray) and len(bvh):
@@ -358,9 +365,7 @@ def traverse(bvh, origin, direction):
         at, side = np.nonzero(hit & bvh.is_leaf[node])
         start, count = bvh.leaf_start[node[at], side], bvh.count[node[at], side]
         within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-        pairs.append(
-            np.stack([np.repeat(ray[at], count), bvh.order[np.repeat(start, count) + within]], axis=1)
-        )
+        pairs.append(np.stack([np.repeat(ray[at], count), bvh.order[np.repeat(start, count) + within]], axis=1))
         at, side = np.nonzero(hit & bvh.is_inner[node])
         ray, node = ray[at], bvh.child[node[at], side]
     assert levels <= bvh.depth

@@ -4,7 +4,7 @@ import time
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from addon.sync.recognise import MeshArrays, recognise
@@ -12,7 +12,7 @@ from tests.exact_shapes import assert_exact
 
 
 def mesh_of(vertices, faces, uv=None, smooth=True, material=0) -> MeshArrays:
-    """MeshArrays of vertices (v, 3), faces (lists of vertex indices) and uv (lists of pairs, a list for each face)."""
+    """MeshArrays of vertices (v, 3), faces (lists of vertex indices) and uv (a list of pairs for each face)."""
     sizes = [len(face) for face in faces]
     return MeshArrays(
         np.array(vertices, np.float32),
@@ -24,12 +24,10 @@ def mesh_of(vertices, faces, uv=None, smooth=True, material=0) -> MeshArrays:
     )
 
 
-def lattice(
-    radius, z, n, bottom=None, top=None, phase=0.3, side_uv=(1, 1, 0, 0), cap_uv=(0.48, 0.48, 0.01, 0.01)
-):
+def lattice(radius, z, n, bottom=None, top=None, phase=0.3, side_uv=(1, 1, 0, 0), cap_uv=(0.48, 0.48, 0.01, 0.01)):
     """Vertices, faces and uv of rings with radius (m,) at z (m,); bottom and top: None, "NGON" or the tip's height.
 
-    The side's uv is side_uv of (theta / 2 pi, height), theta from ``phase``; that of flat ends cap_uv of the disc's own.
+    The side's uv is side_uv of (theta / 2 pi, height), theta from ``phase``; flat ends have cap_uv of a disc's.
     """
     m, angle = len(z), phase + 2 * np.pi * np.arange(n) / n
     around = np.stack([np.cos(angle), np.sin(angle)], 1)
@@ -49,9 +47,7 @@ def lattice(
         for j in range(n):
             i = (j + 1) % n
             faces.append([k * n + j, k * n + i, (k + 1) * n + i, (k + 1) * n + j])
-            uv.append(
-                [of_side(j, z[k]), of_side(j + 1, z[k]), of_side(j + 1, z[k + 1]), of_side(j, z[k + 1])]
-            )
+            uv.append([of_side(j, z[k]), of_side(j + 1, z[k]), of_side(j + 1, z[k + 1]), of_side(j, z[k + 1])])
     tip_vertex = m * n
     for end, k, sign in ((bottom, 0, -1), (top, m - 1, 1)):
         ring = [k * n + j for j in range(n)][::sign]
@@ -76,14 +72,11 @@ def uv_sphere(n=32, rings=16, **settings):
     theta = np.pi * np.arange(rings - 1, 0, -1) / rings
     vertices, faces, uv = lattice(np.sin(theta), np.cos(theta), n, -1.0, 1.0, **settings)
     height = np.arccos(np.clip(vertices[:, 2], -1, 1))
-    uv = [
-        [(u, 1 - height[v] / np.pi) for (u, _), v in zip(c, f, strict=True)]
-        for c, f in zip(uv, faces, strict=True)
-    ]
+    uv = [[(u, 1 - height[v] / np.pi) for (u, _), v in zip(c, f, strict=True)] for c, f in zip(uv, faces, strict=True)]
     return vertices, faces, uv
 
 
-def ico_sphere(m, stretch=1.0):
+def ico_sphere(m):
     """An icosahedron with its faces divided into m x m triangles, pushed out to the unit sphere."""
     g = (1 + 5**0.5) / 2
     corners = np.array([[0, s, t * g] for s in (-1, 1) for t in (-1, 1)])
@@ -91,11 +84,7 @@ def ico_sphere(m, stretch=1.0):
     index, vertices, faces = {}, [], []
     near = corners @ corners.T > 0.4
     triples = [
-        (a, b, c)
-        for a in range(12)
-        for b in range(a)
-        for c in range(b)
-        if near[a, b] and near[b, c] and near[a, c]
+        (a, b, c) for a in range(12) for b in range(a) for c in range(b) if near[a, b] and near[b, c] and near[a, c]
     ]
     for triple in triples:
         a, b, c = corners[list(triple)]
@@ -115,7 +104,7 @@ def ico_sphere(m, stretch=1.0):
                 faces.append([place[i, j], place[i + 1, j], place[i, j + 1]])
             if i and i + j < m:
                 faces.append([place[i, j], place[i, j + 1], place[i - 1, j + 1]])
-    return np.array(vertices) * stretch, faces
+    return np.array(vertices), faces
 
 
 def shuffled(mesh: tuple, seed: int):
@@ -149,9 +138,7 @@ SHAPES = {
     "truncated": lambda n: lattice([1.0, 0.25], [-1.0, 1.0], n, "NGON", 1.0),
     "truncated, wide top": lambda n: lattice([0.25, 1.0], [-1.0, 1.0], n, None, "NGON"),
     "truncated, scaled uv": lambda n: lattice([0.25, 1.0], [0.0, 3.0], n, side_uv=(0.7, -0.5, 0.2, 0.9)),
-    "cylinder, uv twice around": lambda n: lattice(
-        [2.0, 2.0], [0.0, 3.0], n, "NGON", side_uv=(-2, 3, 0.25, 0.1)
-    ),
+    "cylinder, uv twice around": lambda n: lattice([2.0, 2.0], [0.0, 3.0], n, "NGON", side_uv=(-2, 3, 0.25, 0.1)),
     "cone": lambda n: lattice([1.0], [-1.0], n, "NGON", 1.0),
     "cone fan": lambda n: lattice([1.0], [-1.0], n, -1.0, 1.0),
     "cone, open": lambda n: lattice([1.0], [-1.0], n, None, 1.0),
@@ -165,6 +152,7 @@ KINDS = {"sphere": "SPHERE", "cylinder": "CYLINDER", "truncated": "CONE", "cone"
 
 
 @pytest.mark.parametrize("name", SHAPES)
+@settings(max_examples=20)
 @given(
     n=st.integers(12, 40),
     seed=st.integers(0, 2**16),
@@ -183,6 +171,7 @@ def test_found_exactly_at_any_size_and_place(name, n, seed, size, away):
 
 
 @pytest.mark.parametrize("name", SHAPES)
+@settings(max_examples=20)
 @given(
     n=st.integers(12, 40),
     seed=st.integers(0, 2**16),
@@ -233,17 +222,17 @@ def test_truncated_cone_in_full():
     assert np.allclose([bottom.radius, top.radius], [1, 0.25], atol=1e-6)
 
 
-@pytest.mark.parametrize("m", [2, 3, 4, 8, 16])
+@pytest.mark.parametrize("m", [2, 3, 4, 8])
+@settings(max_examples=10)
 @given(seed=st.integers(0, 2**16), stretch=st.tuples(*[st.floats(0.3, 3)] * 3), stretched=st.booleans())
 def test_ico_spheres(m, seed, stretch, stretched):
     vertices, faces = ico_sphere(m)
     mesh = mesh_of(vertices @ rotation(seed).T * (stretch if stretched else stretch[0]) + 2, faces)
     found = recognise(mesh)
-    assert (found.kind, found.local is not None) == (
-        "SPHERE",
-        stretched and max(stretch) > 1.001 * min(stretch),
-    ) or (stretched and max(stretch) < 1.001 * min(stretch))
-    assert_exact(mesh, found, tolerance=4e-4)
+    assert found.kind == "SPHERE", found.reason
+    if not stretched or max(stretch) > 1.001 * min(stretch):
+        assert (found.local is not None) == stretched
+    assert_exact(mesh, found)
 
 
 def test_an_icosahedron_is_no_sphere():
@@ -303,8 +292,18 @@ def twisted(mesh):
     return vertices, [[*faces[0][:3], faces[2][3]], *faces[1:]], uv
 
 
-CYLINDER = (lambda n=32: lattice([1.0, 1.0], [-1.0, 1.0], n, "NGON", "NGON"),)[0]
-CUBE = ([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)],)[0]
+def cylinder(n=32):
+    return lattice([1.0, 1.0], [-1.0, 1.0], n, "NGON", "NGON")
+
+
+def last_face(mesh, face):
+    """The mesh with another last face (a list of indices, or a function of the old one)."""
+    vertices, faces, uv = mesh
+    face = face(faces[-1]) if callable(face) else face
+    return vertices, [*faces[:-1], face], [*uv[:-1], uv[-1][: len(face)]]
+
+
+CUBE = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 CUBE_FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
 NAN = [float("nan"), 0, 0]
 MESHES = {
@@ -313,10 +312,7 @@ MESHES = {
     "sphere, a pole moved": (moved(uv_sphere(), 480, [0, 0, 0.01]), "neither a circle nor a straight line"),
     "sphere, a face missing": (removed(uv_sphere(), [100]), "faces of a UV or ico sphere are missing"),
     "sphere, its cap missing": (removed(uv_sphere(), range(448, 480)), "missing"),
-    "sphere, a face twice and one missing": (
-        (lambda m: (m[0], [*m[1][:-1], m[1][0][:3]], [*m[2][:-1], m[2][0][:3]]))(uv_sphere()),
-        "",
-    ),
+    "sphere, a face twice and one missing": (last_face(uv_sphere(), uv_sphere()[1][-2]), "do not join"),
     "sphere, inside out": (flipped(uv_sphere()), "normals point inward"),
     "sphere, one face inside out": (one_flipped(uv_sphere()), "rings"),
     "sphere, a face twisted": (twisted(uv_sphere()), "do not join neighbouring vertices"),
@@ -325,16 +321,16 @@ MESHES = {
     "sphere, a vertex at NaN": (moved(uv_sphere(), 100, NAN), "NaN"),
     "two spheres": (joined(uv_sphere(), moved(uv_sphere(), slice(None), [3, 0, 0])), ""),
     "capsule": (capsule(), "neither a circle nor a straight line"),
-    "octagonal prism": (CYLINDER(8), "8 sides are too few for a cylinder (12 or more)"),
+    "octagonal prism": (cylinder(8), "8 sides are too few for a cylinder (12 or more)"),
     "hexagonal pyramid": (
         lattice([1.0], [0.0], 6, "NGON", 1.0),
         "6 sides are too few for a cone (12 or more)",
     ),
     "octagon": (lattice([1.0], [0.0], 8, "NGON"), "8 sides are too few for a disc (12 or more)"),
-    "cylinder, a vertex moved": (moved(CYLINDER(), 3, [0, 0, 0.02]), "not on the regular rings"),
-    "cylinder, a side missing": (removed(CYLINDER(), [3]), ""),
-    "cylinder, inside out": (flipped(CYLINDER()), "normals point inward"),
-    "cylinder, a cap inside out": ((lambda m: (m[0], [*m[1][:-1], m[1][-1][::-1]], m[2]))(CYLINDER()), ""),
+    "cylinder, a vertex moved": (moved(cylinder(), 3, [0, 0, 0.02]), "not on the regular rings"),
+    "cylinder, a side missing": (removed(cylinder(), [3]), ""),
+    "cylinder, inside out": (flipped(cylinder()), "normals point inward"),
+    "cylinder, a cap inside out": (last_face(cylinder(), lambda face: face[::-1]), "do not join"),
     "cylinder, a raised cap": (lattice([1.0, 1.0], [-1.0, 1.0], 32, "NGON", 1.3), "neither a circle"),
     "bevelled cylinder": (
         lattice([0.9, 1.0, 1.0, 0.9], [-1.0, -0.9, 0.9, 1.0], 32, "NGON", "NGON"),
@@ -366,13 +362,11 @@ def test_any_vertex_moved_by_a_hundredth_is_seen(seed, name, by):
     reach = np.ptp(vertices, axis=0).max()
     vertices = vertices.copy()
     if "disc" in name:
-        direction[2] = (
-            abs(direction[2]) + 1
-        )  # along its plane, the middle of a fan could move unseen but for the uv
+        direction[2] = abs(direction[2]) + 1  # along its plane, the middle of a fan could move unseen but for the uv
     vertices[rng.integers(len(vertices))] += by * reach * direction / np.linalg.norm(direction)
     found = recognise(mesh_of(vertices, faces, uv))
-    is_tip_of_cone = found.kind == "CONE" and found.local is not None
-    assert found.kind == "MESH" or is_tip_of_cone, found.reason
+    sheared = found.kind == "CONE" and found.local is not None  # a cone whose tip moved is an oblique cone
+    assert found.kind == "MESH" or sheared, found.reason
 
 
 @given(seed=st.integers(0, 2**16), name=st.sampled_from(list(SHAPES)))
@@ -398,7 +392,7 @@ def test_no_faces():
 
 
 def test_materials_may_differ_between_parts_only():
-    mesh = mesh_of(*CYLINDER())
+    mesh = mesh_of(*cylinder())
     mesh.material[-2:] = [1, 2]
     assert [part.material for part in recognise(mesh).parts] == [0, 1, 2]
     mesh.material[3] = 5
@@ -406,7 +400,7 @@ def test_materials_may_differ_between_parts_only():
 
 
 def test_smooth_is_asked_of_the_curved_faces():
-    mesh = mesh_of(*CYLINDER())
+    mesh = mesh_of(*cylinder())
     mesh.smooth[-2:] = False
     assert recognise(mesh).all_smooth
     mesh.smooth[3] = False
@@ -436,9 +430,7 @@ def seconds(mesh: MeshArrays) -> float:
     """The shortest of a few recognitions."""
     times = []
     for _ in range(5):
-        fresh = MeshArrays(
-            mesh.positions, mesh.corner_vertex, mesh.face_offset, mesh.smooth, mesh.material, mesh.uv
-        )
+        fresh = MeshArrays(mesh.positions, mesh.corner_vertex, mesh.face_offset, mesh.smooth, mesh.material, mesh.uv)
         start = time.perf_counter()
         recognise(fresh)
         times.append(time.perf_counter() - start)

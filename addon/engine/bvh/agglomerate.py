@@ -24,9 +24,7 @@ CODE_MASK = (1 << CODE_BITS) - 1
 CHUNK = 8192  # edges worked on at a time: the scratch arrays stay in the cache
 
 
-def agglomerate(
-    span: np.ndarray, ids: np.ndarray, topology: Topology, stop: int
-) -> tuple[np.ndarray, np.ndarray]:
+def agglomerate(span: np.ndarray, ids: np.ndarray, topology: Topology, stop: int) -> tuple[np.ndarray, np.ndarray]:
     """Merge clusters until at most `stop` (at least 1) remain, adding the nodes to `topology`.
 
     Args:

@@ -66,9 +66,7 @@ def checked_labels(label: np.ndarray | None, n: int) -> np.ndarray:
     bad = (label < 0) | (label >= MAX_LABELS)
     if bad.any():
         first = int(bad.argmax())
-        raise ValueError(
-            f"labels: primitive {first} has label {label[first]}, expected 0 to {MAX_LABELS - 1}"
-        )
+        raise ValueError(f"labels: primitive {first} has label {label[first]}, expected 0 to {MAX_LABELS - 1}")
     return label.astype(np.int32)
 
 

@@ -10,9 +10,7 @@ TRAVERSAL_COST = 1.0  # of visiting a node, which tests the boxes of both its ch
 INTERSECTION_COST = 0.5  # of testing a primitive: fewer texels than a node, and a leaf reads them in a row
 
 
-def sah_cost(
-    bvh: Bvh, traversal_cost: float = TRAVERSAL_COST, intersection_cost: float = INTERSECTION_COST
-) -> float:
+def sah_cost(bvh: Bvh, traversal_cost: float = TRAVERSAL_COST, intersection_cost: float = INTERSECTION_COST) -> float:
     """Expected cost of a random long ray that meets the root's box (Goldsmith and Salmon 1987).
 
     (sum of area(inner) * traversal_cost + sum of area(leaf) * count * intersection_cost) / area(root). If the
@@ -26,9 +24,7 @@ def sah_cost(
     boxes = bvh.boxes[used].astype(np.float64)
     share = _half_area(boxes[:, 1] - boxes[:, 0]) / root if root > 0 else np.ones(len(boxes))
     count = bvh.count[used]
-    return float(
-        traversal_cost + np.sum(share * np.where(count > 0, count * intersection_cost, traversal_cost))
-    )
+    return float(traversal_cost + np.sum(share * np.where(count > 0, count * intersection_cost, traversal_cost)))
 
 
 def statistics(bvh: Bvh) -> dict[str, int | float]:

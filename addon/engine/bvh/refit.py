@@ -22,9 +22,7 @@ def refit(bvh: Bvh, lo: np.ndarray, hi: np.ndarray) -> Bvh:
     """
     lo, hi = checked_boxes(lo, hi)
     if len(lo) != len(bvh.order):
-        raise ValueError(
-            f"refit: the hierarchy holds {len(bvh.order)} primitives, but {len(lo)} boxes were given"
-        )
+        raise ValueError(f"refit: the hierarchy holds {len(bvh.order)} primitives, but {len(lo)} boxes were given")
     boxes = np.full((len(bvh), 2, 2, 3), FAR, np.float32)
     if len(bvh) == 0:
         return replace(bvh, boxes=boxes)

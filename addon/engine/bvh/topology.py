@@ -43,7 +43,5 @@ class Topology:
         """(2n - 1,) int32 numbers of primitives below the nodes added so far (1 for those to come)."""
         count = np.ones(2 * self.n - 1, np.int32)
         for batch in self.batches:
-            count[self.n + batch.start : self.n + batch.stop] = (
-                count[self.left[batch]] + count[self.right[batch]]
-            )
+            count[self.n + batch.start : self.n + batch.stop] = count[self.left[batch]] + count[self.right[batch]]
         return count

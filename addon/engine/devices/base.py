@@ -9,8 +9,8 @@ FULL_SCREEN_TRIANGLE = ((-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0))
 class Device(Protocol):
     """An adapter of a GPU context. All arrays are float32; rows of pictures run from the bottom up.
 
-    Textures, targets and programs are opaque to the caller; they live until `release` (programs: as long as the device).
-    Methods raise DeviceError with the cause.
+    Textures, targets and programs are opaque to the caller; they live until `release` (programs: as long as the
+    device). Methods raise DeviceError with the cause.
     """
 
     name: str  #: renderer and driver, for people

@@ -13,8 +13,8 @@ from .base import FULL_SCREEN_TRIANGLE, describe_compile_error
 
 _VERTEX = "void main() { gl_Position = vec4(position, 0.0, 1.0); }"
 
-#: Programs by source. They live as long as Blender: one that is freed while bound makes later draws use it (see the manual
-#: of the gpu module: programs are told apart by their address).
+#: Programs by source. They live as long as Blender: one that is freed while bound makes later draws use it (see the
+#: manual of the gpu module: programs are told apart by their address).
 _PROGRAMS = {}
 
 
@@ -34,8 +34,8 @@ class BlenderDevice:
             self.name = f"{gpu.platform.renderer_get()} ({gpu.platform.backend_type_get()})"
         except (ImportError, SystemError, RuntimeError) as error:
             raise DeviceError(
-                f"Blender has no GPU context here ({error}). Conic draws with OpenGL, Vulkan or Metal; on a machine without "
-                "a GPU install Mesa's software drivers (Debian, Ubuntu: libegl1 and libgl1-mesa-dri)"
+                f"Blender has no GPU context here ({error}). Conic draws with OpenGL, Vulkan or Metal; on a "
+                "machine without a GPU install Mesa's software drivers (Debian, Ubuntu: libegl1 and libgl1-mesa-dri)"
             ) from error
         self._batch_for_shader = batch_for_shader
 
@@ -53,9 +53,7 @@ class BlenderDevice:
 
     def target(self, width, height, attachments):
         try:
-            colors = [
-                self._gpu.types.GPUTexture((width, height), format="RGBA32F") for _ in range(attachments)
-            ]
+            colors = [self._gpu.types.GPUTexture((width, height), format="RGBA32F") for _ in range(attachments)]
         except (RuntimeError, ValueError, MemoryError) as error:
             raise DeviceError(f"no memory for a picture of {width} x {height}: {error}") from error
         for color in colors:

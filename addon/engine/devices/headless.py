@@ -1,4 +1,5 @@
-"""A context without a window through moderngl: tests, command line and library use. The only file that imports moderngl."""
+"""A context without a window through moderngl: tests, command line and library use. The only file that imports
+moderngl."""
 
 import re
 
@@ -21,16 +22,12 @@ def _context():
     try:
         import moderngl
     except ImportError as error:
-        raise DeviceError(
-            "drawing without Blender needs the Python package moderngl: pip install moderngl"
-        ) from error
+        raise DeviceError("drawing without Blender needs the Python package moderngl: pip install moderngl") from error
     causes = []
     for options in ({"backend": "egl"}, {}):
         try:
             return moderngl.create_context(standalone=True, require=330, **options)
-        except (
-            Exception
-        ) as error:  # moderngl and glcontext raise bare Exception for a missing library or display
+        except Exception as error:  # moderngl and glcontext raise bare Exception for a missing library or display
             causes.append(str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__)
     raise DeviceError(_NO_DRIVER.format(cause="; ".join(dict.fromkeys(causes))))
 
@@ -50,9 +47,7 @@ class HeadlessDevice:
     def texture(self, texels):
         height, width, _ = texels.shape
         try:
-            texture = self._context.texture(
-                (width, height), 4, np.ascontiguousarray(texels, np.float32), dtype="f4"
-            )
+            texture = self._context.texture((width, height), 4, np.ascontiguousarray(texels, np.float32), dtype="f4")
         except Exception as error:
             raise DeviceError(f"no memory for a texture of {width} x {height}: {error}") from error
         texture.filter = (self._context.NEAREST, self._context.NEAREST)
@@ -86,9 +81,7 @@ class HeadlessDevice:
     @staticmethod
     def _declarations(source):
         samplers = "".join(f"uniform sampler2D {name}_data;\n" for name in source.textures)
-        outputs = "".join(
-            f"layout(location = {i}) out vec4 {name};\n" for i, name in enumerate(source.outputs)
-        )
+        outputs = "".join(f"layout(location = {i}) out vec4 {name};\n" for i, name in enumerate(source.outputs))
         block = f"{source.uniform_struct}layout(std140) uniform frame_block {{ Frame frame; }};\n"
         return f"#version 330\n{block if source.uniform_struct else ''}{samplers}{outputs}#line 1\n"
 

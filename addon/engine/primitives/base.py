@@ -1,7 +1,8 @@
 """What the kinds of primitives have in common: checked columns of numpy arrays.
 
-A kind is one class whose attributes are columns, one row a primitive. It knows its bounding boxes, how its rows become GPU
-records, how it moves with a similarity transform, and a float64 reference of its intersection that exists to test the GLSL.
+A kind is one class whose attributes are columns, one row a primitive. It knows its bounding boxes, how its rows
+become GPU records, how it moves with a similarity transform, and a float64 reference of its intersection that exists
+to test the GLSL.
 """
 
 from dataclasses import dataclass
@@ -59,9 +60,7 @@ class Primitives:
         elif array.dtype not in (np.float32, np.float64):
             array = array.astype(np.float64)
         if column.width and (array.ndim == 0 or array.shape[-1] != column.width or array.ndim > 2):
-            raise SceneError(
-                f"{self.kind}: {column.name} has shape {array.shape}, expected (n, {column.width})"
-            )
+            raise SceneError(f"{self.kind}: {column.name} has shape {array.shape}, expected (n, {column.width})")
         if not column.width and array.ndim > 1:
             raise SceneError(f"{self.kind}: {column.name} has shape {array.shape}, expected (n,)")
         if not column.integer and not np.isfinite(array).all():
@@ -136,8 +135,8 @@ class Primitives:
 class Similarity:
     """A transform that keeps shapes: uniform scale, rotation and translation.
 
-    `Similarity.of(matrix)` gives None for a 4x4 matrix that shears, stretches or mirrors (which would turn the uv around), so
-    that the caller can instance instead.
+    `Similarity.of(matrix)` gives None for a 4x4 matrix that shears, stretches or mirrors (which would turn the uv
+    around), so that the caller can instance instead.
     """
 
     #: Largest relative deviation from conformal that still counts as such: about the rounding of a float32 matrix.
@@ -178,7 +177,8 @@ def any_perpendicular(axis):
 
 
 def perpendicular_part(vector, axis, fallback=None):
-    """The unit vectors (n, 3) of `vector` made perpendicular to the unit vectors `axis`; any one where they are parallel."""
+    """The unit vectors (n, 3) of `vector` made perpendicular to the unit vectors `axis`; any one where they are
+    parallel."""
     part = vector - np.sum(vector * axis, axis=-1, keepdims=True) * axis
     length = np.linalg.norm(part, axis=-1, keepdims=True)
     usable = length > 1e-6 * np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-300)

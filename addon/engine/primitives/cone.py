@@ -9,11 +9,12 @@ from .disc import IDENTITY_UV
 
 
 class Cones(Primitives):
-    """Cone sides: base (n, 3), apex (n, 3), base_radius (n,), apex_radius (n,), material, meridian, uv_transform, planar.
+    """Cone sides: base (n, 3), apex (n, 3), base_radius (n,), apex_radius (n,), material, meridian, uv_transform,
+    planar.
 
-    The radius runs linearly from base to apex; one of the two may be 0. v = 0 at the base, 1 at the apex; `planar` (n,) bool
-    replaces the paper's uv by a projection along the axis, as Blender's cone has it: 1/2 + d . e0 / 2R with R the larger
-    radius. Two negative radii (or one, with 0) show the inside only.
+    The radius runs linearly from base to apex; one of the two may be 0. v = 0 at the base, 1 at the apex; `planar`
+    (n,) bool replaces the paper's uv by a projection along the axis, as Blender's cone has it: 1/2 + d . e0 / 2R with
+    R the larger radius. Two negative radii (or one, with 0) show the inside only.
     """
 
     kind = "cone"
@@ -31,13 +32,9 @@ class Cones(Primitives):
     )
 
     def _check(self):
-        self._refuse(
-            (self.base_radius == 0.0) & (self.apex_radius == 0.0), "both radii are 0, a cone needs one"
-        )
+        self._refuse((self.base_radius == 0.0) & (self.apex_radius == 0.0), "both radii are 0, a cone needs one")
         self._refuse(self.base_radius * self.apex_radius < 0.0, "one radius is negative, the other positive")
-        self._refuse(
-            (self.base == self.apex).all(axis=-1), "both ends are the same point, a cone needs a length"
-        )
+        self._refuse((self.base == self.apex).all(axis=-1), "both ends are the same point, a cone needs a length")
 
     def bounds(self):
         return segment_bounds(self.base, self.apex, np.abs(self.base_radius), np.abs(self.apex_radius))

@@ -27,9 +27,7 @@ class Cylinders(Primitives):
 
     def _check(self):
         self._refuse(self.radius == 0.0, "the radius is 0, a cylinder needs one")
-        self._refuse(
-            (self.base == self.apex).all(axis=-1), "both ends are the same point, a cylinder needs a length"
-        )
+        self._refuse((self.base == self.apex).all(axis=-1), "both ends are the same point, a cylinder needs a length")
 
     def bounds(self):
         return segment_bounds(self.base, self.apex, np.abs(self.radius), np.abs(self.radius))
@@ -90,9 +88,9 @@ def meridian_u(normal, axis, meridian):
 def quadric_hit(base, apex, base_radius, apex_radius, origin, direction, t_min):
     """Nearest t (n,) on the sides of truncated cones whose radius grows linearly from base to apex; inf for a miss.
 
-    With R(z) = r0 + k z the side is |(p - base) x axis|^2 = R(z)^2, which contains (34) for k = 0 and (40) for r0 = 0.
-    Between the ends R is nowhere of the other sign, so the mirrored nappe never counts. Negative radii: only what is hit
-    from within counts.
+    With R(z) = r0 + k z the side is |(p - base) x axis|^2 = R(z)^2, which contains (34) for k = 0 and (40) for r0 =
+    0. Between the ends R is nowhere of the other sign, so the mirrored nappe never counts. Negative radii: only what
+    is hit from within counts.
     """
     axis, length = axis_and_length(base, apex)
     outside = np.asarray(base_radius) + apex_radius > 0.0

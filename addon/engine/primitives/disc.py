@@ -11,8 +11,8 @@ IDENTITY_UV = (1.0, 1.0, 0.0, 0.0)
 class Discs(Primitives):
     """Discs: center (n, 3), normal (n, 3), radius (n,), material (n,) int, meridian (n, 3), uv_transform (n, 4).
 
-    `uv_transform` (su, sv, ou, ov) maps the paper's uv to (su * u + ou, sv * v + ov), for discs that stand for a part of a
-    mesh with a uv map of its own.
+    `uv_transform` (su, sv, ou, ov) maps the paper's uv to (su * u + ou, sv * v + ov), for discs that stand for a part
+    of a mesh with a uv map of its own.
     """
 
     kind = "disc"

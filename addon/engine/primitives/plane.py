@@ -9,8 +9,8 @@ from .base import Column, Primitives, dot, perpendicular_part
 class Planes(Primitives):
     """Infinite planes: point (n, 3), normal (n, 3), material (n,) int, meridian (n, 3).
 
-    uv = ((p - point) . e0, (p - point) . e1) / tile with e0 the meridian and e1 = normal x e0, so that an image repeats every
-    `tile` units; the paper leaves the plane's uv open.
+    uv = ((p - point) . e0, (p - point) . e1) / tile with e0 the meridian and e1 = normal x e0, so that an image
+    repeats every `tile` units; the paper leaves the plane's uv open.
     """
 
     kind = "plane"
@@ -54,6 +54,4 @@ class Planes(Primitives):
     def reference_surface(self, point):
         offset = point - self.point
         e0 = perpendicular_part(self.meridian, self.normal) / self.tile[:, None]
-        return self.normal.copy(), np.stack(
-            [dot(offset, e0), dot(offset, np.cross(self.normal, e0))], axis=-1
-        )
+        return self.normal.copy(), np.stack([dot(offset, e0), dot(offset, np.cross(self.normal, e0))], axis=-1)

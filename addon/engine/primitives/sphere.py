@@ -54,10 +54,9 @@ class Spheres(Primitives):
         return np.stack([e0, np.cross(self.pole, e0), self.pole], axis=-1)
 
     def _rotation_parameters(self):
-        """Modified Rodrigues parameters (n, 3) of the frames, tan(angle / 4) times the axis: three numbers without loss."""
-        if (
-            self.pole.strides[0] == 0 and self.meridian.strides[0] == 0
-        ):  # one frame for all: most often no rotation
+        """Modified Rodrigues parameters (n, 3) of the frames, tan(angle / 4) times the axis: three numbers without
+        loss."""
+        if self.pole.strides[0] == 0 and self.meridian.strides[0] == 0:  # one frame for all: most often no rotation
             return _rodrigues(self._with({n: getattr(self, n)[:1] for n in ("pole", "meridian")})._frames())
         return _rodrigues(self._frames())
 

@@ -9,7 +9,8 @@ from .base import Column, Primitives, dot
 class Triangles(Primitives):
     """Triangles: p0, p1, p2 (n, 3), n0, n1, n2 (n, 3) vertex normals, uv0, uv1, uv2 (n, 2), material, one_sided (n,).
 
-    All normals zero (the default): a flat triangle. `one_sided`: seen only from where the vertices run counter-clockwise.
+    All normals zero (the default): a flat triangle. `one_sided`: seen only from where the vertices run
+    counter-clockwise.
     """
 
     kind = "triangle"

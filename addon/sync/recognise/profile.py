@@ -45,9 +45,7 @@ def _sphere(mesh: MeshArrays, lattice: Revolution) -> Recognition:
     off_radius = np.abs(lattice.radius - radius * np.sin(theta)).max()
     off_height = np.abs(lattice.z - middle + half * np.cos(theta)).max()
     if max(off_radius, off_height) > lattice.tolerance:
-        raise StaysMesh(
-            "it is a surface of revolution, but its profile is neither a circle nor a straight line"
-        )
+        raise StaysMesh("it is a surface of revolution, but its profile is neither a circle nor a straight line")
     _enough_segments(lattice, "sphere")
     if m + 1 < LEAST_RINGS:
         raise StaysMesh(f"{m + 1} rings are too few for a sphere ({LEAST_RINGS} or more)")
@@ -86,14 +84,10 @@ def _disc(mesh: MeshArrays, lattice: Revolution) -> Recognition:
     if not ((side > 0).all() or (side < 0).all()):
         raise StaysMesh("its normals point to both sides (Mesh > Normals > Recalculate Outside)")
     faces = np.ones(mesh.counts[1], bool)
-    part = _cap(
-        mesh, lattice, faces, float(np.sign(side[0])), float(lattice.z[0]), float(lattice.radius[0]), "disc"
-    )
+    part = _cap(mesh, lattice, faces, float(np.sign(side[0])), float(lattice.z[0]), float(lattice.radius[0]), "disc")
     fill = "one n-gon" if NGON in lattice.ends else "a triangle fan"
     reason = f"circle, {lattice.counts.segments} vertices, filled with {fill}"
-    return Recognition(
-        "DISC", _stretched(reason, lattice), (part,), _to_object(lattice)[2], bool(mesh.smooth.all())
-    )
+    return Recognition("DISC", _stretched(reason, lattice), (part,), _to_object(lattice)[2], bool(mesh.smooth.all()))
 
 
 def _cone(mesh: MeshArrays, lattice: Revolution) -> Recognition:
@@ -106,9 +100,7 @@ def _cone(mesh: MeshArrays, lattice: Revolution) -> Recognition:
     length, base, apex = z[-1] - z[0], radius[0], radius[-1]
     line = base + (apex - base) * (z - z[0]) / length
     if np.abs(line - radius).max() > lattice.tolerance:
-        raise StaysMesh(
-            "it is a surface of revolution, but its profile is neither a circle nor a straight line"
-        )
+        raise StaysMesh("it is a surface of revolution, but its profile is neither a circle nor a straight line")
     straight = abs(apex - base) <= lattice.tolerance
     name = "cylinder" if straight else "cone"
     _enough_segments(lattice, name)
@@ -120,9 +112,7 @@ def _cone(mesh: MeshArrays, lattice: Revolution) -> Recognition:
             parts.append(_cap(mesh, lattice, region == place, sign, float(height), float(size), "cap"))
     smooth = bool(mesh.smooth[region == SIDE].all())
     kind = "CYLINDER" if straight else "CONE"
-    return Recognition(
-        kind, _cone_reason(lattice, name, len(parts) - 1), tuple(parts), _to_object(lattice)[2], smooth
-    )
+    return Recognition(kind, _cone_reason(lattice, name, len(parts) - 1), tuple(parts), _to_object(lattice)[2], smooth)
 
 
 def _cone_reason(lattice: Revolution, name: str, caps: int) -> str:
@@ -147,9 +137,7 @@ def _regions(mesh: MeshArrays, lattice: Revolution) -> np.ndarray:
     return region
 
 
-def _side(
-    mesh: MeshArrays, lattice: Revolution, faces: np.ndarray, name: str, z, base, apex
-) -> Cylinder | Cone:
+def _side(mesh: MeshArrays, lattice: Revolution, faces: np.ndarray, name: str, z, base, apex) -> Cylinder | Cone:
     """The side of a cylinder or cone; its theta starts where the uv map's u does."""
     n, corners = lattice.counts.segments, faces[mesh.corner_face]
     vertex = mesh.corner_vertex[corners]
@@ -192,9 +180,7 @@ def _spokes(lattice: Revolution, vertex: np.ndarray) -> np.ndarray:
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)], 1)
 
 
-def _cap(
-    mesh: MeshArrays, lattice: Revolution, faces: np.ndarray, sign: float, z: float, radius: float, name: str
-):
+def _cap(mesh: MeshArrays, lattice: Revolution, faces: np.ndarray, sign: float, z: float, radius: float, name: str):
     """The disc of a cap at height z whose normal is sign times the axis."""
     corners = faces[mesh.corner_face]
     mirror = np.array([1.0, sign])  # normal x e0 turns the other way under the body

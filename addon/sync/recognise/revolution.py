@@ -184,9 +184,7 @@ def _place(points, grid, tips, normal, ends, counts) -> Revolution:
     local = (points - low) @ inverse.T
     x, y, z = np.moveaxis(local[grid], -1, 0)
     z, radius = z.mean(1), np.hypot(x, y).mean(1)
-    tolerance = POSITION_TOLERANCE * min(radius.max(), length) + rounding * max(
-        1.0, np.linalg.norm(inverse, 2)
-    )
+    tolerance = POSITION_TOLERANCE * min(radius.max(), length) + rounding * max(1.0, np.linalg.norm(inverse, 2))
     tip_z = tuple(float(local[t, 2]) if t >= 0 else np.nan for t in tips)
     raised = tuple(bool(abs(h - ring) > tolerance) for h, ring in zip(tip_z, z[[0, -1]], strict=True))
     zero = np.zeros(len(points), np.int64)
@@ -233,9 +231,7 @@ def _meridians(lattice: Revolution, grid: np.ndarray, tips: np.ndarray) -> None:
     widest = np.argmax(lattice.radius)
     steps = (angle - angle[widest, 0]) * n / (2 * np.pi)
     weight = np.broadcast_to(lattice.radius[:, None] ** 2, (m, n))
-    lattice.phase = float(
-        angle[widest, 0] + np.average(steps - np.rint(steps), weights=weight) * 2 * np.pi / n
-    )
+    lattice.phase = float(angle[widest, 0] + np.average(steps - np.rint(steps), weights=weight) * 2 * np.pi / n)
     meridian = np.rint(steps).astype(np.int64) % n
     ideal = lattice.phase + 2 * np.pi * meridian / n
     radius = lattice.radius[:, None]

@@ -84,7 +84,8 @@ def fit_planar(uv: np.ndarray | None, xy: np.ndarray, radius: float) -> tuple[Uv
     offset = uv.mean(0)
     matrix = 2 * (uv.T @ xy) / (xy * xy).sum()
     (ux, uy), (vx, vy) = matrix
-    angle = np.arctan2(uy, ux) if np.hypot(ux, uy) >= np.hypot(vx, vy) else np.arctan2(-vx, vy)
+    by_u = np.hypot(ux, uy) >= np.hypot(vx, vy) / 2  # by v only where u hardly changes: so su is not negative
+    angle = np.arctan2(uy, ux) if by_u else np.arctan2(-vx, vy)
     c, s = np.cos(angle), np.sin(angle)
     su, sv = 2 * radius * (ux * c + uy * s), 2 * radius * (vy * c - vx * s)
     p, q = (xy @ np.array([[c, -s], [s, c]])).T / (2 * radius)

@@ -1,0 +1,141 @@
+"""Evaluated meshes as arrays, and arrays as triangles. No loop over elements: attributes are read whole."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..engine.scene import Triangles
+from .recognise import MeshArrays
+
+
+def read_mesh(mesh, uv_map=None):
+    """The `MeshArrays` of an evaluated Blender mesh; `uv_map` names its uv map, empty for the active one, None for none."""
+    faces = len(mesh.polygons)
+    offsets = np.empty(faces + 1, np.int32)
+    mesh.polygons.foreach_get("loop_start", offsets[:faces])
+    offsets[faces] = len(mesh.loops)
+    sharp = _attribute(mesh, "sharp_face", "FACE", "value", bool)
+    slots = _attribute(mesh, "material_index", "FACE", "value", np.int32)
+    return MeshArrays(
+        positions=_positions(mesh),
+        corner_vertex=_corner_vertex(mesh),
+        face_offset=offsets,
+        smooth=np.ones(faces, bool) if sharp is None else ~sharp,
+        material=np.zeros(faces, np.int32) if slots is None else slots,
+        uv=None if uv_map is None else read_uv(mesh, uv_map),
+    )
+
+
+def read_uv(mesh, name=""):
+    """The uv map called `name`, empty for the one active for rendering: (corners, 2) float32, or None where there is none.
+    Values that are not finite become 0."""
+    if not name:
+        name = next((layer.name for layer in mesh.uv_layers if layer.active_render), "")
+    uv = _attribute(mesh, name, "CORNER", "vector", np.float32, 2) if name else None
+    return None if uv is None else np.nan_to_num(uv, copy=False, posinf=0.0, neginf=0.0)
+
+
+def _attribute(mesh, name, domain, member, dtype, width=1):
+    """A mesh attribute as (n,) or (n, width); None where it is absent or lies on another domain."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.domain != domain or not _has(attribute, width, dtype):
+        return None
+    values = np.empty(len(attribute.data) * width, dtype)
+    attribute.data.foreach_get(member, values)
+    return values.reshape(-1, width) if width > 1 else values
+
+
+def _has(attribute, width, dtype):
+    wanted = {(1, bool): "BOOLEAN", (1, np.int32): "INT", (2, np.float32): "FLOAT2", (3, np.float32): "FLOAT_VECTOR"}
+    return attribute.data_type == wanted[width, dtype]
+
+
+def _positions(mesh):
+    positions = np.empty(len(mesh.vertices) * 3, np.float32)
+    if len(positions):
+        mesh.attributes["position"].data.foreach_get("vector", positions)
+    return positions.reshape(-1, 3)
+
+
+def _corner_vertex(mesh):
+    corners = np.empty(len(mesh.loops), np.int32)
+    if len(corners):
+        mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
+    return corners
+
+
+@dataclass(frozen=True)
+class MeshTriangles:
+    """Triangles in object space, or None where the mesh has none, and how many were dropped for vertices that are not
+    finite."""
+
+    triangles: Triangles | None
+    dropped: int = 0
+
+
+def read_triangles(mesh, slot_count, uv_sources=()):
+    """The `MeshTriangles` of an evaluated Blender mesh.
+
+    Their material is the slot, as Blender clamps it to `slot_count`. `uv_sources`: a `UvSource` or None for each slot; empty
+    for no uv at all.
+    """
+    corners, faces = _triangulation(mesh)
+    if not len(corners):
+        return MeshTriangles(None)
+    vertices = _corner_vertex(mesh)[corners]
+    positions = _positions(mesh)
+    good = np.isfinite(positions).all(axis=1)
+    dropped = 0
+    if not good.all():
+        keep = good[vertices].all(axis=1)
+        dropped = int(len(keep) - keep.sum())
+        corners, faces, vertices = corners[keep], faces[keep], vertices[keep]
+        if not len(corners):
+            return MeshTriangles(None, dropped)
+    columns = dict(zip(("p0", "p1", "p2"), positions[vertices.T], strict=True))
+    columns |= _normals(mesh, corners, faces)
+    slots = _attribute(mesh, "material_index", "FACE", "value", np.int32)
+    material = np.clip(slots[faces], 0, slot_count - 1) if slots is not None else np.zeros(len(faces), np.int32)
+    columns |= _uvs(mesh, corners, material, uv_sources)
+    return MeshTriangles(Triangles(material=material, **columns), dropped)
+
+
+def _triangulation(mesh):
+    """Corners (n, 3) and face (n,) of each triangle, as Blender triangulates."""
+    faces = len(mesh.polygons)
+    if faces and len(mesh.loops) == 3 * faces:
+        return np.arange(3 * faces, dtype=np.int32).reshape(-1, 3), np.arange(faces, dtype=np.int32)
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    corners, of_face = np.empty(count * 3, np.int32), np.empty(count, np.int32)
+    if count:
+        mesh.loop_triangles.foreach_get("loops", corners)
+        mesh.loop_triangle_polygons.foreach_get("value", of_face)
+    return corners.reshape(-1, 3), of_face
+
+
+def _normals(mesh, corners, faces):
+    """Columns n0, n1, n2 of triangles, 0 where the face is flat; nothing where all are."""
+    if mesh.normals_domain == "FACE":
+        return {}
+    normals = np.empty(len(mesh.loops) * 3, np.float32)
+    mesh.corner_normals.foreach_get("vector", normals)
+    normals = np.nan_to_num(normals.reshape(-1, 3), copy=False)
+    of_triangle = normals[corners.T]
+    sharp = _attribute(mesh, "sharp_face", "FACE", "value", bool)
+    if sharp is not None and not mesh.has_custom_normals:
+        of_triangle[:, sharp[faces]] = 0.0
+    return dict(zip(("n0", "n1", "n2"), of_triangle, strict=True))
+
+
+def _uvs(mesh, corners, material, uv_sources):
+    """Columns uv0, uv1, uv2 (n, 2): for each triangle the uv that its material's images take; 0 where it has no map."""
+    uv = np.zeros((3, len(corners), 2), np.float32)
+    for source in {source for source in uv_sources if source is not None}:
+        of_corner = read_uv(mesh, source.map)
+        if of_corner is None:
+            continue
+        uses = np.array([other == source for other in uv_sources])
+        rows = uses[material]
+        uv[:, rows] = source.applied(of_corner)[corners[rows].T]
+    return dict(zip(("uv0", "uv1", "uv2"), uv, strict=True))

@@ -1,0 +1,49 @@
+"""The full sync: everything that Blender's depsgraph shows becomes one engine scene."""
+
+from ..engine.scene import Scene
+from ..engine.settings import Settings
+from .camera import camera_of_render
+from .images import Images
+from .lights import Lights
+from .object_sync import ObjectSync
+from .reports import Reports
+from .shading import Shadings
+from .world import read_world
+
+
+def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report):
+    """The engine Scene of a depsgraph, for a frame of width x height pixels.
+
+    `engine`: the RenderEngine that asks, None outside of a render. `camera`: an engine Camera to use instead of the scene's.
+    `report(level, message)` is called once for each thing that is not rendered as it is. Raises SceneError where there is no
+    camera. No reference to Blender's data is kept.
+    """
+    reports = Reports(report)
+    if camera is None:
+        camera = camera_of_render(engine, depsgraph, width, height, reports=reports)
+    scene = Scene(camera=camera)
+    images = Images(scene, reports)
+    view_layer = depsgraph.view_layer_eval
+    world = view_layer.world_override or depsgraph.scene_eval.world
+    scene.world = read_world(world, scene, images, reports)
+    shadings = Shadings(scene, images, reports)
+    lights = Lights(scene, reports)
+    objects = ObjectSync(
+        scene, shadings, lights, reports, depsgraph.scene_eval.conic.recognise, view_layer.material_override
+    )
+    objects.collect(depsgraph)
+    objects.place()
+    lights.finish()
+    return scene
+
+
+def sync_settings(scene, preview=False):
+    """The engine Settings of a Blender scene (evaluated or not); `preview` for the viewport and previews."""
+    conic = scene.conic
+    return Settings(
+        samples=conic.preview_samples if preview else conic.samples,
+        max_depth=conic.max_depth,
+        weight_cutoff=min(conic.weight_cutoff, 0.999),
+        tinted_shadows=conic.shadows == "TINTED",
+        film_transparent=scene.render.film_transparent,
+    )
