@@ -35,7 +35,6 @@ FEATURES = frozenset(
     ]
 )
 
-_RECORDS = {record.name: record for record in layout.RECORDS}
 _DIRECTIVE = re.compile(r"\s*#\s*(include|ifdef|ifndef|else|endif)\b\s*(.*?)\s*(?:/\*.*)?$")
 
 
@@ -74,21 +73,24 @@ class ProgramSource:
         return "\n".join(rows)
 
 
-def program(entry, features=(), constants=None, outputs=("out_color",), folder=SHADER_FOLDER):
+def program(
+    entry, features=(), constants=None, outputs=("out_color",), folders=(SHADER_FOLDER,), records=layout.RECORDS
+):
     """Assemble the program whose main() is in the file `entry`.
 
-    `features`: names out of FEATURES that hold. `constants`: name to number, defined at the top.
-    Raises ShaderSourceError.
+    `features`: names out of FEATURES that hold. `constants`: name to number, defined at the top. `folders`: where files
+    are looked for, in this order. `records`: what can be included by name. Raises ShaderSourceError.
     """
-    return _program(entry, frozenset(features), tuple(sorted((constants or {}).items())), tuple(outputs), str(folder))
+    constants = tuple(sorted((constants or {}).items()))
+    return _program(entry, frozenset(features), constants, tuple(outputs), tuple(map(Path, folders)), tuple(records))
 
 
 @cache
-def _program(entry, features, constants, outputs, folder):
+def _program(entry, features, constants, outputs, folders, records):
     unknown = features - FEATURES
     if unknown:
         raise ShaderSourceError(f"unknown feature {sorted(unknown)[0]}")
-    composer = _Composer(Path(folder), features)
+    composer = _Composer(folders, features, records)
     for name, value in constants:
         composer.emit(f"#define {name} {value}", "<constants>", 1)
     for number, line in enumerate(layout.glsl_constants().splitlines(), 1):
@@ -107,8 +109,9 @@ def _program(entry, features, constants, outputs, folder):
 class _Composer:
     """Text, origin of each line and textures of a program while its files are read."""
 
-    def __init__(self, folder, features):
-        self.folder, self.features = folder, features
+    def __init__(self, folders, features, records):
+        self.folders, self.features = folders, features
+        self.records = {record.name: record for record in records}
         self.text, self.lines, self.textures = [], [], []
         self._included = set()
 
@@ -117,12 +120,12 @@ class _Composer:
         self.lines.append((file, number))
 
     def file(self, name, included_from=""):
-        """Emit a file of the shader folder, unless the program has it already."""
+        """Emit a file of the shader folders, unless the program has it already."""
         if name in self._included:
             return
         self._included.add(name)
-        path = self.folder / name
-        if not path.is_file():
+        path = next((folder / name for folder in self.folders if (folder / name).is_file()), None)
+        if path is None:
             raise ShaderSourceError(f"{included_from}no shader file {name}")
         active = [True]
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
@@ -156,8 +159,8 @@ class _Composer:
         name = argument[1:-1]
         if argument == f'"{name}"':
             self.file(name, where)
-        elif argument == f"<{name}>" and name in _RECORDS:
-            self._record(_RECORDS[name])
+        elif argument == f"<{name}>" and name in self.records:
+            self._record(self.records[name])
         else:
             raise ShaderSourceError(f"{where}#include {argument} names no file and no record")
 

@@ -8,53 +8,43 @@
 #include <cone>
 #include <cone_surface>
 
-/* b^2 - a c, from the point of the ray closest to the middle of the cone: the value does not depend on the point, but its
- * rounding error does. */
-float cone_discriminant(Cone cone, vec3 axis, float slope, Ray ray, vec3 direction, float dz, float a)
-{
-  vec3 middle = cone.base + 0.5 * cone.axis;
-  vec3 offset = ray.origin - middle;
-  offset += dot(middle - ray.origin, ray.direction) * ray.direction;
-  offset += 0.5 * cone.axis;
-  float z = dot(offset, axis);
-  vec3 position = offset - z * axis;
-  float radius = abs(cone.base_radius) + slope * z;
-  float b = dot(position, direction) - slope * dz * radius;
-  float c = dot(position, position) - radius * radius;
-  return b * b - a * c;
-}
-
-/* Nearest t in (0, t_max), else t_max. Negative radii are hit from within only. */
+/* Nearest t in (0, t_max), else t_max. Negative radii are hit from within only.
+ *
+ * Along the ray the side is a t^2 + 2 b t + c = 0, measured from the ray's point closest to the middle of the cone, so that
+ * the digits left are those of the cone's size. The discriminant b^2 - a c loses them again; it equals
+ * |R d - k dz p|^2 - |p x d|^2, p and d across the axis, where both lengths keep theirs. A ray steeper than the side
+ * (a < 0) meets the double cone always, whatever rounding says near the tip. */
 float cone_hit(Cone cone, Ray ray, float t_max)
 {
   float height = length(cone.axis);
   vec3 axis = cone.axis / height;
   float slope = (abs(cone.apex_radius) - abs(cone.base_radius)) / height;
-  vec3 offset = ray.origin - cone.base;
+  vec3 from_middle = (ray.origin - cone.base) - 0.5 * cone.axis;
+  float closest = -dot(from_middle, ray.direction);
+  vec3 offset = from_middle + closest * ray.direction + 0.5 * cone.axis;
   float z = dot(offset, axis);
   float dz = dot(ray.direction, axis);
   vec3 position = offset - z * axis;
   vec3 direction = ray.direction - dz * axis;
   float radius = abs(cone.base_radius) + slope * z;
-  float a = dot(direction, direction) - slope * dz * slope * dz;
-  float discriminant = cone_discriminant(cone, axis, slope, ray, direction, dz, a);
-  if (discriminant < 0.0) {
+  float growth = slope * dz;
+  float a = dot(direction, direction) - growth * growth;
+  float to_edge = length(radius * direction - growth * position);
+  float to_ray = length(cross(position, direction));
+  float discriminant = (to_edge - to_ray) * (to_edge + to_ray);
+  if (discriminant < 0.0 && a >= 0.0) {
     return t_max;
   }
-  float b = dot(position, direction) - slope * dz * radius;
+  float b = dot(position, direction) - growth * radius;
   float distance_to_axis = length(position);
   float c = (distance_to_axis - radius) * (distance_to_axis + radius);
-  vec2 roots = quadric_roots(a, b, c, discriminant);
+  vec2 roots = quadric_roots(a, b, c, max(discriminant, 0.0));
   vec2 heights = vec2(z) + roots * dz;
+  roots += closest;
   bool outside_seen = cone.base_radius + cone.apex_radius > 0.0;
-  /* The outside is seen where the ray goes against the gradient: a t + b < 0. */
-  if (roots.x > 0.0 && heights.x >= 0.0 && heights.x <= height && (outside_seen || a * roots.x + b >= 0.0)) {
-    return min(roots.x, t_max);
-  }
-  if (roots.y > 0.0 && heights.y >= 0.0 && heights.y <= height && (outside_seen || a * roots.y + b >= 0.0)) {
-    return min(roots.y, t_max);
-  }
-  return t_max;
+  bool enters = outside_seen && roots.x > 0.0 && heights.x >= 0.0 && heights.x <= height;
+  bool leaves = roots.y > 0.0 && heights.y >= 0.0 && heights.y <= height;
+  return min(t_max, min(enters ? roots.x : t_max, leaves ? roots.y : t_max));
 }
 
 Surface cone_surface(Cone cone, ConeSurface info, Ray ray, float t)

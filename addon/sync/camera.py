@@ -30,9 +30,10 @@ def camera_of_render(engine, depsgraph, width, height, *, camera=None, reports=N
     return Camera(_without_scale(matrix, camera.name), window, data.type == "ORTHO", (data.clip_start, data.clip_end))
 
 
-def camera_of_view(region_data):
-    """The camera of a 3D view from its `region_data` (a RegionView3D): perspective, orthographic, or through a camera with
-    the view's zoom and offset."""
+def camera_of_view(_region, region_data):
+    """The camera of a 3D view of `region` and `region_data` (a RegionView3D): perspective, orthographic, or through a
+    camera with the view's zoom and offset. The window's matrix already has the region's form.
+    """
     projection = np.array(region_data.window_matrix, np.float64)
     matrix = _without_scale(np.linalg.inv(np.array(region_data.view_matrix, np.float64)), "view")
     orthographic = not region_data.is_perspective

@@ -1,7 +1,7 @@
 """What each object is taken as, and why: an exact shape or its mesh."""
 
 from dataclasses import dataclass
-from zlib import crc32
+from hashlib import blake2b
 
 import numpy as np
 
@@ -25,19 +25,40 @@ class Taken:
     problem: bool = False
 
 
+#: Recognitions by a digest of all that they depend on: copies of a mesh and later syncs have them for a tenth of the time.
+_BY_CONTENT = {}
+_REMEMBER_AT_MOST = 1 << 14
+_REMEMBER_FACES = 1 << 17  # of larger meshes a digest takes longer than a look at their counts
+
+
+def _recognise_once(arrays):
+    """The Recognition of MeshArrays, remembered by their content."""
+    if len(arrays.smooth) > _REMEMBER_FACES:
+        return recognise(arrays)
+    digest = blake2b(digest_size=16)
+    for part in (arrays.positions, arrays.corner_vertex, arrays.face_offset, arrays.smooth, arrays.material, arrays.uv):
+        digest.update(b"-" if part is None else np.int64(part.size).tobytes() + part.tobytes())
+    key = digest.digest()
+    if key not in _BY_CONTENT:
+        if len(_BY_CONTENT) >= _REMEMBER_AT_MOST:
+            _BY_CONTENT.clear()
+        _BY_CONTENT[key] = recognise(arrays)
+    return _BY_CONTENT[key]
+
+
 class Recognitions:
-    """What meshes are recognised as, each once."""
+    """What the meshes of one sync are recognised as, each read once."""
 
     def __init__(self):
         self._recognised = {}
         self._shapes = {}
 
     def of(self, mesh, uv_map):
-        """The Recognition of an evaluated mesh, together with one of its uv maps: its name, empty for the active one, None
-        where the uv does not matter."""
+        """The Recognition of an evaluated mesh, together with one of its uv maps: its name, empty for the active one,
+        None where the uv does not matter."""
         key = data_key(mesh), uv_map
         if key not in self._recognised:
-            self._recognised[key] = recognise(read_mesh(mesh, uv_map))
+            self._recognised[key] = _recognise_once(read_mesh(mesh, uv_map))
         return self._recognised[key]
 
     def fitted(self, mesh, kind):
@@ -116,7 +137,7 @@ def describe(obj, depsgraph):
     """What a render takes an object as, for its panel: (kind, reason). `kind` is MESH, SPHERE, CYLINDER, CONE, DISC, PLANE,
     or NONE for what is no surface.
 
-    Recognition is repeated only when the mesh has changed.
+    A panel may ask each time that it is drawn: recognition is repeated only when the mesh has changed.
     """
     evaluated = obj.evaluated_get(depsgraph)
     if evaluated.type in ("CURVE", "FONT", "META", "SURFACE"):
@@ -128,29 +149,8 @@ def describe(obj, depsgraph):
         return "MESH", "mesh: it has no faces"
     shadings = Shadings(Scene(), None, Reports(lambda level, message: None))
     slots = tuple(shadings.of(slot.material) for slot in evaluated.material_slots) or (shadings.of(None),)
-    taken = taken_as(evaluated.conic.primitive, mesh, slots, depsgraph.scene.conic.recognise, _remembered(mesh))
+    taken = taken_as(evaluated.conic.primitive, mesh, slots, depsgraph.scene.conic.recognise, Recognitions())
     return taken.kind, taken.reason
 
 
 _NOUNS = {"CURVE": "curve", "FONT": "text", "META": "metaball", "SURFACE": "surface"}
-_REMEMBERED = {}
-_REMEMBER_AT_MOST = 64
-
-
-def _remembered(mesh):
-    """The `Recognitions` of a mesh as it is now; those of earlier forms are forgotten."""
-    state = _fingerprint(mesh)
-    if _REMEMBERED.get(data_key(mesh), (None,))[0] != state:
-        if len(_REMEMBERED) >= _REMEMBER_AT_MOST:
-            _REMEMBERED.clear()
-        _REMEMBERED[data_key(mesh)] = state, Recognitions()
-    return _REMEMBERED[data_key(mesh)][1]
-
-
-def _fingerprint(mesh):
-    """A number that changes with all that recognition looks at."""
-    arrays = read_mesh(mesh, "")
-    crc = 0
-    for values in (arrays.positions, arrays.corner_vertex, arrays.face_offset, arrays.smooth, arrays.material, arrays.uv):
-        crc = crc32(b"" if values is None else values, crc)
-    return arrays.counts, crc

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..engine.scene import Material
-from .compat import node_tree
 from .closures import principled, read_closure
+from .compat import node_tree
 from .keys import original_key
 from .lobes import Lobes
 from .nodes import output_source

@@ -184,13 +184,22 @@ def test_one_leaf_has_an_empty_sibling(builder, n):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_empty_child_is_missed(seed):
-    """By rays in all directions, the axes' and the one diagonal towards it included, from near and far."""
+    """By rays in all directions, the axes' included, and by those on the diagonal that leads to it."""
     rng = np.random.default_rng(seed)
     bvh = build(np.zeros((1, 3)), np.ones((1, 3)))
-    direction = np.concatenate([rng.normal(size=(1000, 3)), np.eye(3), -np.eye(3), [[1, 1, 1], [-1, -1, -1]]])
+    direction = np.concatenate([rng.normal(size=(1000, 3)), np.eye(3), -np.eye(3), np.ones((50, 3)), -np.ones((50, 3))])
     direction *= 10 ** rng.uniform(-3, 3, (len(direction), 1))
     origin = rng.normal(size=direction.shape) * 10 ** rng.uniform(-4, 6, (len(direction), 1))
+    origin[-100:] = origin[-100:, :1]
     assert not slabs(origin, direction, bvh.boxes[:, 1], 1e30).any()
+
+
+@BUILDERS
+@SCENES
+def test_larger_child_comes_first(builder, scene):
+    size = np.diff(builder(*scene(3000, np.random.default_rng(0))).boxes.astype(np.float64), axis=2)[:, :, 0]
+    area = size[..., 0] * size[..., 1] + size[..., 2] * (size[..., 0] + size[..., 1])
+    assert np.all(area[:, 0] >= area[:, 1] * (1 - 1e-4))
 
 
 def exponential(n, ratio):
@@ -299,7 +308,7 @@ def test_a_far_outlier_does_not_spoil_the_rest():
         return np.sum((area * np.where(count > 0, 0.5 * count, 1))[area < 10])
 
     alone = cost_of_the_rest(build(lo, hi))
-    lo[-1], hi[-1] = -1e8, 1e8
+    lo[-1], hi[-1] = -2e8, 0
     assert cost_of_the_rest(build(lo, hi)) < 1.1 * alone
 
 

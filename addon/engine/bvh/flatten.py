@@ -33,7 +33,7 @@ def flatten(
 
 def _choose_leaves(
     topology: Topology, label: np.ndarray, leaf_size: int, traversal_cost: float, intersection_cost: float
-):
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Bottom up: make a leaf of every subtree of one label and `leaf_size` primitives at most, where both its
     children are leaves and one is no dearer.
 
@@ -99,7 +99,14 @@ def _leaf_nodes(topology: Topology, leaves: np.ndarray, start: np.ndarray) -> np
     return nodes[nodes >= 0]
 
 
-def _lay_out(topology: Topology, leaves, kind, start, count, rank):
+def _lay_out(
+    topology: Topology,
+    leaves: np.ndarray,
+    kind: np.ndarray,
+    start: np.ndarray,
+    count: np.ndarray,
+    rank: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
     """Top down, a level at a time: `child`, `count` and `label` of the `Bvh`, and its depth.
 
     A subtree of c leaves has c - 1 nodes, so depth-first places are known at once. A chain that would become
@@ -132,7 +139,9 @@ def _lay_out(topology: Topology, leaves, kind, start, count, rank):
     return child, size, kinds, depth
 
 
-def _sides(topology: Topology, leaves, node, number, depth):
+def _sides(
+    topology: Topology, leaves: np.ndarray, node: np.ndarray, number: np.ndarray, depth: int
+) -> tuple[np.ndarray, np.ndarray]:
     """The nodes below each `node` (-1 where the topology is not followed), and the leaves in the first."""
     # Halving c leaves takes ceil(log2 c) levels: the last chance to begin is when just so many are left.
     halve = (node < 0) | (depth + np.ceil(np.log2(number)) >= MAX_DEPTH)

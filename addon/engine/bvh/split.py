@@ -15,7 +15,7 @@ import numpy as np
 from .boxes import half_areas
 from .topology import Topology
 
-FIXED_BITS = 38  # fraction bits of the fixed-point spans; leaves 24 bits for segments
+FIXED_BITS = 38  # fraction bits of the fixed-point spans; leaves 23 bits for segments
 MAX_LEVELS = 44  # levels before segments are halved rather than split by cost: chains end here
 BALANCE = 1e-4  # how much worse a wholly lopsided split may look: equal boxes are halved
 
@@ -64,7 +64,7 @@ def _emit(areas: list, parents: list, ids: np.ndarray, topology: Topology) -> No
         below = topology.add(nodes[:, 0], nodes[:, 1], area)
 
 
-def _cheapest_cuts(level: _Level, fixed: np.ndarray, weight: np.ndarray, halve: bool):
+def _cheapest_cuts(level: _Level, fixed: np.ndarray, weight: np.ndarray, halve: bool) -> tuple[np.ndarray, np.ndarray]:
     """Per segment of two items or more: (s,) items left of the cut and (s,) axis."""
     size, start = level.size, level.start[:-1]
     segment = np.repeat(np.arange(len(size)), size)

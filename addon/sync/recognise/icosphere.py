@@ -1,5 +1,4 @@
-"""Blender's ico sphere: an icosahedron, each face divided into m x m triangles, then pushed out to the
-sphere.
+"""Blender's ico sphere: an icosahedron, each face divided into m x m triangles and pushed out.
 
 Twelve vertices have five neighbours, the corners of the icosahedron; every other vertex is at the direction
 of (i A + j B + k C) / m for a face A, B, C of it, with whole i + j + k = m. Blender makes m a power of two.
@@ -58,8 +57,7 @@ def recognise_icosphere(mesh: MeshArrays, m: int) -> Recognition:
 
 
 def _stretch(spokes: np.ndarray, rounding: float) -> tuple[np.ndarray, bool, float]:
-    """The symmetric (3, 3) map from the unit sphere, whether it only scales, and the rounding in units of the
-    radius.
+    """The symmetric (3, 3) map from the unit sphere, whether it only scales, and the rounding in radii.
 
     By the icosahedron's symmetry the unit directions scatter like the identity / 3, so the covariance of the
     vertices is a third of the map squared.

@@ -1,5 +1,7 @@
 """Which exact shape the rings of a lattice of revolution make: its parts, their materials and uv maps."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from .revolution import NGON, OPEN, Revolution, check_outward, facing
@@ -54,7 +56,7 @@ def _sphere(mesh: MeshArrays, lattice: Revolution) -> Recognition:
     angle = np.pi * (1 - (lattice.ring + 1) / (m + 1))
     turn = lattice.phase + 2 * np.pi * lattice.meridian / n
     at_pole = (lattice.ring < 0) | (lattice.ring == m)
-    around = np.where(at_pole, 0.0, np.sin(angle))
+    around = np.where(at_pole, 0.0, np.sin(angle))  # exactly none at the poles
     direction = np.stack([around * np.cos(turn), around * np.sin(turn), np.cos(angle)], 1)
     uv, turned = fit_sphere(mesh.uv, direction[mesh.corner_vertex])
     centre = lattice.origin + lattice.basis @ np.array([0.0, 0.0, middle])
@@ -151,7 +153,7 @@ def _side(mesh: MeshArrays, lattice: Revolution, faces: np.ndarray, name: str, z
     if name == "cone" and not uv_map.matches:
         xy = _spokes(lattice, vertex)
         uv_map, planar_angle = fit_planar(uv, xy, max(base, apex))
-        uv_map = type(uv_map)(uv_map.transform, uv_map.matches, planar=uv_map.matches)
+        uv_map = replace(uv_map, planar=uv_map.matches)
         angle = planar_angle if uv_map.matches else angle
     basis, origin, _ = _to_object(lattice)
     foot, axis = origin + basis[:, 2] * z[0], basis[:, 2].copy()

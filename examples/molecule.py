@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Molecules for pictures: the atoms of a PDB file, their bonds, and what each becomes as spheres and cylinders.
+
+Needs numpy only. Lengths are in angstroms, as in the file.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+#: Covalent radii of Cordero et al., Dalton Trans. 2008, 2832; van der Waals radii of Bondi, J. Phys. Chem. 68 (1964) 441.
+COVALENT_RADIUS = {"H": 0.31, "C": 0.76, "N": 0.71, "O": 0.66, "S": 1.05, "P": 1.07}
+VAN_DER_WAALS_RADIUS = {"H": 1.20, "C": 1.70, "N": 1.55, "O": 1.52, "S": 1.80, "P": 1.80}
+#: Two atoms are bonded up to this much beyond the sum of their covalent radii (Meng and Lewis, J. Comput. Chem. 12 (1991) 891).
+BOND_TOLERANCE = 0.45
+
+#: Columns of an atom's line (wwPDB format 3.3, from 0): two-letter element names begin one column before the others.
+_COLUMNS = {"element": (12, 14), "name": (12, 16), "residue": (17, 20), "chain": (21, 22)}
+
+
+@dataclass(frozen=True)
+class Atoms:
+    """Atoms of a molecule: `position` (n, 3) float64, and as strings (n,) `element`, `name` (which atom of its residue),
+    `residue` and `chain`."""
+
+    position: np.ndarray
+    element: np.ndarray
+    name: np.ndarray
+    residue: np.ndarray
+    chain: np.ndarray
+
+    def __len__(self):
+        return len(self.position)
+
+    def where(self, mask):
+        """The atoms where `mask` (n,) bool is true."""
+        return Atoms(*(column[mask] for column in vars(self).values()))
+
+    def radius(self, of_element):
+        """The radius (n,) of each atom by a table of elements; raises ValueError for an element that it lacks."""
+        elements, index = np.unique(self.element, return_inverse=True)
+        unknown = sorted(set(elements.tolist()) - set(of_element))
+        if unknown:
+            raise ValueError(f"no radius is known for the element {', '.join(unknown)}; expected one of {', '.join(of_element)}")
+        return np.array([of_element[e] for e in elements.tolist()])[index]
+
+
+def read_pdb(path):
+    """The `Atoms` of a PDB file's first model. Raises ValueError, naming the file, where there are none or one is garbled."""
+    model = Path(path).read_bytes().split(b"\nENDMDL", 1)[0]
+    lines = np.array([s.ljust(80) for s in model.splitlines() if s.startswith((b"ATOM  ", b"HETATM"))], "S80")
+    if not len(lines):
+        raise ValueError(f"{path}: no atoms (lines that begin with ATOM or HETATM) in it")
+    letters = lines.view("S1").reshape(len(lines), 80)
+
+    def field(start, end):
+        return np.char.strip(np.ascontiguousarray(letters[:, start:end]).view(f"S{end - start}")[:, 0].astype("U"))
+
+    try:
+        position = np.stack([field(at, at + 8).astype(np.float64) for at in (30, 38, 46)], axis=-1)
+    except ValueError as error:
+        raise ValueError(f"{path}: columns 31 to 54 of an atom's line are not three coordinates: {error}") from None
+    return Atoms(position, **{name: field(*columns) for name, columns in _COLUMNS.items()})
+
+
+def find_bonds(atoms):
+    """The pairs (m, 2) of indices of bonded atoms, by their distance; each once, the lower index first."""
+    radius = atoms.radius(COVALENT_RADIUS)
+    x = atoms.position - atoms.position.mean(axis=0)
+    squared = (x * x).sum(axis=1)
+    distance2 = squared[:, None] + squared - 2.0 * (x @ x.T)
+    reach = radius[:, None] + radius + BOND_TOLERANCE
+    return np.argwhere(np.triu(distance2 < reach * reach, k=1))
+
+
+def half_bonds(atoms, bonds):
+    """Each bond in two halves, in the colours of their atoms: base (2m, 3), apex (2m, 3) and the atom (2m,) whose each is."""
+    ends = atoms.position[bonds]
+    middle = ends.mean(axis=1)
+    return ends.swapaxes(0, 1).reshape(-1, 3), np.concatenate([middle, middle]), bonds.T.reshape(-1)
+
+
+def principal_axes(position):
+    """Unit vectors (3, 3), a row each, along which points (n, 3) extend most to least; right-handed."""
+    axes = np.linalg.svd(position - position.mean(axis=0), full_matrices=False)[2]
+    return axes * np.array([1.0, 1.0, np.linalg.det(axes)])[:, None]

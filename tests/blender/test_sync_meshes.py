@@ -1,0 +1,276 @@
+"""Meshes: evaluated, triangulated, with normals, uv and slots; instances; what cannot be rendered."""
+
+import bpy
+import numpy as np
+import pytest
+
+from addon.engine.errors import SceneError
+from tests.blender.building import add_camera, image, link, material, mesh_of, node, quad, sync, triangles_of
+
+
+def test_quad():
+    add_camera()
+    quad(location=(1.0, 2.0, 3.0), scale=(2.0, 1.0, 1.0))
+    (instance,) = sync().scene.instances
+    triangles = triangles_of(instance)
+    assert len(triangles) == 2
+    area = np.linalg.norm(np.cross(triangles.p1 - triangles.p0, triangles.p2 - triangles.p0), axis=1).sum() / 2.0
+    assert area == pytest.approx(1.0)
+    np.testing.assert_allclose(instance.matrix @ (1, 1, 0, 1), (3.0, 3.0, 3.0, 1.0))
+    assert instance.name == "quad"
+
+
+def test_a_concave_polygon_is_triangulated_within_its_outline():
+    add_camera()
+    link(mesh_of([(0, 0, 0), (4, 0, 0), (4, 4, 0), (2, 1, 0), (0, 4, 0)], [(0, 1, 2, 3, 4)]))
+    triangles = triangles_of(sync().scene.instances[0])
+    signed = np.cross(triangles.p1 - triangles.p0, triangles.p2 - triangles.p0)[:, 2] / 2.0
+    assert (signed > 0.0).all() and signed.sum() == pytest.approx(10.0)
+
+
+def test_modifiers_are_applied():
+    add_camera()
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.context.object.modifiers.new("more", "SUBSURF").render_levels = 2
+    bpy.context.object.modifiers["more"].levels = 2
+    assert sync().scene.primitive_counts() == {"triangle": 6 * 16 * 2}
+
+
+def test_normals_of_smooth_and_flat_faces():
+    add_camera()
+    obj = link(mesh_of([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 1), (2, 1, 1)], [(0, 1, 2, 3), (1, 4, 5, 2)]))
+    obj.data.polygons[0].use_smooth, obj.data.polygons[1].use_smooth = True, False
+    triangles = triangles_of(sync().scene.instances[0])
+    flat = triangles.p0[:, 2] + triangles.p1[:, 2] + triangles.p2[:, 2] > 0.5
+    assert flat.sum() == 2
+    for normals in (triangles.n0, triangles.n1, triangles.n2):
+        assert (normals[flat] == 0.0).all()
+        np.testing.assert_allclose(normals[~flat], [(0.0, 0.0, 1.0)] * 2, atol=1e-6)
+
+
+def test_smooth_normals_are_interpolated_over_an_edge():
+    add_camera()
+    obj = link(mesh_of([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 0, 1), (1, 1, 1)], [(0, 1, 2, 3), (1, 4, 5, 2)]))
+    obj.data.polygons.foreach_set("use_smooth", [True, True])
+    triangles = triangles_of(sync().scene.instances[0])
+    corners = np.concatenate([triangles.p0, triangles.p1, triangles.p2])
+    normals = np.concatenate([triangles.n0, triangles.n1, triangles.n2])
+    edge = (corners[:, 0] == 1.0) & (corners[:, 2] == 0.0)
+    np.testing.assert_allclose(normals[edge], [(-np.sqrt(0.5), 0.0, np.sqrt(0.5))] * edge.sum(), atol=1e-5)
+
+
+def test_all_flat_mesh_has_no_normals():
+    add_camera()
+    quad()
+    assert not triangles_of(sync().scene.instances[0]).n0.any()
+
+
+def textured(name, uv_map=None, **mapping):
+    """A material with an image by the active uv map, one by name, or one moved by a Mapping node."""
+    made, tree, output = material(name)
+    picture = node(tree, "TexImage")
+    picture.image = image(np.ones((2, 2, 4)))
+    node(tree, "BsdfDiffuse", output.inputs["Surface"])
+    tree.links.new(picture.outputs["Color"], tree.nodes["Diffuse BSDF"].inputs["Color"])
+    vector = picture.inputs["Vector"]
+    if mapping:
+        vector = node(tree, "Mapping", vector, **mapping).inputs["Vector"]
+    if uv_map:
+        node(tree, "UVMap", vector).uv_map = uv_map
+    return made
+
+
+def uv_by_position(triangles):
+    """uv of each corner, for comparing with its position."""
+    points = np.concatenate([triangles.p0, triangles.p1, triangles.p2])[:, :2]
+    return points, np.concatenate([triangles.uv0, triangles.uv1, triangles.uv2])
+
+
+def test_uv_of_the_active_render_map():
+    add_camera()
+    obj = quad()
+    obj.data.uv_layers.new(name="other")
+    obj.data.materials.append(textured("a"))
+    points, uv = uv_by_position(triangles_of(sync().scene.instances[0]))
+    np.testing.assert_allclose(uv, points)
+
+
+def test_uv_of_a_named_map():
+    add_camera()
+    obj = quad()
+    other = obj.data.uv_layers.new(name="other")
+    other.uv.foreach_set("vector", np.full(8, 0.25, np.float32))
+    obj.data.materials.append(textured("a", "other"))
+    _, uv = uv_by_position(triangles_of(sync().scene.instances[0]))
+    np.testing.assert_allclose(uv, 0.25)
+
+
+def test_uv_through_a_mapping_node():
+    add_camera()
+    obj = quad()
+    obj.data.materials.append(
+        textured("a", Location=(0.5, 0.25, 0.0), Rotation=(0.0, 0.0, np.pi / 2), Scale=(2.0, 3.0, 1.0))
+    )
+    points, uv = uv_by_position(triangles_of(sync().scene.instances[0]))
+    expected = np.stack([0.5 - 3.0 * points[:, 1], 0.25 + 2.0 * points[:, 0]], axis=1)
+    np.testing.assert_allclose(uv, expected, atol=1e-6)
+
+
+def test_each_slot_takes_its_own_uv():
+    add_camera()
+    vertices = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 0), (2, 1, 0)]
+    obj = link(mesh_of(vertices, [(0, 1, 2, 3), (1, 4, 5, 2)]))
+    for name, value in (("first", 0.25), ("second", 0.75)):
+        obj.data.uv_layers.new(name=name).uv.foreach_set("vector", np.full(16, value, np.float32))
+        obj.data.materials.append(textured(name, name))
+    obj.data.polygons[1].material_index = 1
+    triangles = triangles_of(sync().scene.instances[0])
+    np.testing.assert_allclose(triangles.uv0[triangles.material == 0], 0.25)
+    np.testing.assert_allclose(triangles.uv2[triangles.material == 1], 0.75)
+
+
+def test_slots_and_object_linked_materials():
+    add_camera()
+    obj = quad()
+    red, green = (material(name)[0] for name in ("red", "green"))
+    obj.data.materials.append(red)
+    obj.data.materials.append(None)
+    obj.data.polygons[0].material_index = 7
+    twin = link(obj.data, "twin")
+    twin.material_slots[0].link = "OBJECT"
+    twin.material_slots[0].material = green
+    first, second = sync().scene.instances
+    assert first.geometry is second.geometry
+    assert (triangles_of(first).material == 1).all(), "a slot past the end is the last one"
+    assert len(first.materials) == 2 and first.materials[1] == second.materials[1]
+    assert first.materials[0] != second.materials[0]
+
+
+def test_deleted_material_is_grey():
+    add_camera()
+    obj = quad()
+    made, _, _ = material()
+    obj.data.materials.append(made)
+    bpy.data.materials.remove(made)
+    synced = sync()
+    (instance,) = synced.scene.instances
+    assert synced.scene.materials[instance.materials[0]].diffuse == (0.8, 0.8, 0.8)
+
+
+def test_objects_that_share_a_mesh_share_its_geometry_unless_modified():
+    add_camera()
+    first = quad()
+    for i in range(3):
+        link(first.data, f"copy {i}", location=(i, 0, 0))
+    link(first.data, "thick").modifiers.new("solid", "SOLIDIFY")
+    scene = sync().scene
+    assert len(scene.instances) == 5
+    assert len({id(instance.geometry) for instance in scene.instances}) == 2
+
+
+def test_collection_instances_share_geometry_and_stand_where_they_are_put():
+    add_camera()
+    collection = bpy.data.collections.new("kept aside")
+    collection.objects.link(bpy.data.objects.new("inner", quad().data))
+    bpy.data.objects.remove(bpy.data.objects["quad"])
+    for x in (1.0, 2.0):
+        link(None, f"place {x}", location=(x, 0, 0), instance_type="COLLECTION", instance_collection=collection)
+    first, second = sync().scene.instances
+    assert first.geometry is second.geometry
+    assert sorted((first.matrix[0, 3], second.matrix[0, 3])) == [1.0, 2.0]
+
+
+@pytest.mark.parametrize("add", ("text", "metaball", "curve", "surface"))
+def test_other_geometry_comes_as_triangles(add):
+    add_camera()
+    operators = {
+        "text": bpy.ops.object.text_add,
+        "metaball": bpy.ops.object.metaball_add,
+        "curve": bpy.ops.curve.primitive_bezier_circle_add,
+        "surface": bpy.ops.surface.primitive_nurbs_surface_sphere_add,
+    }
+    operators[add]()
+    if add == "curve":
+        bpy.context.object.data.bevel_depth = 0.1
+    made, _, _ = material()
+    bpy.context.object.data.materials.append(made)
+    synced = sync()
+    (instance,) = synced.scene.instances
+    assert len(triangles_of(instance)) > 10
+    assert instance.materials == (0,) and not synced.messages
+
+
+def test_triangles_with_nan_vertices_are_dropped_and_named():
+    add_camera()
+    nan = float("nan")
+    vertices = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, nan, 0), (2, 1, 0)]
+    link(mesh_of(vertices, [(0, 1, 2, 3), (1, 4, 5), (1, 5, 2)]), "broken")
+    synced = sync()
+    assert len(triangles_of(synced.scene.instances[0])) == 3
+    assert len(synced.warnings("broken", "1 triangle")) == 1 == len(synced.messages)
+
+
+def test_a_mesh_of_nan_alone_leaves_the_rest_right():
+    add_camera()
+    link(mesh_of([(float("nan"),) * 3] * 3, [(0, 1, 2)]), "broken")
+    quad()
+    synced = sync()
+    assert [instance.name for instance in synced.scene.instances] == ["quad"]
+    assert synced.warnings("broken", "NaN")
+
+
+@pytest.mark.parametrize("scale", ((0.0, 0.0, 0.0), (1.0, 1.0, 0.0)))
+def test_zero_scale_is_named_and_leaves_the_rest_right(scale):
+    add_camera()
+    quad("flat", scale=scale)
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    bpy.context.object.scale = scale
+    quad()
+    synced = sync()
+    assert [instance.name for instance in synced.scene.instances] == ["quad"]
+    assert not len(synced.scene.shapes)
+    assert synced.warnings("'flat'", "scaled to zero") and synced.warnings("'Sphere'", "scaled to zero")
+
+
+def test_empty_scene_and_empty_meshes():
+    add_camera()
+    link(bpy.data.meshes.new("nothing"))
+    link(mesh_of([(0, 0, 0), (1, 0, 0)], []), "points")
+    synced = sync()
+    assert synced.scene.primitive_counts() == {} and not synced.messages
+
+
+def test_no_camera():
+    quad()
+    with pytest.raises(SceneError, match="has no camera; add one"):
+        sync()
+
+
+def test_hidden_objects_are_left_out():
+    add_camera()
+    quad(hide_viewport=True)
+    assert not sync().scene.instances
+
+
+def test_point_cloud_is_spheres():
+    add_camera()
+    tree = bpy.data.node_groups.new("points", "GeometryNodeTree")
+    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    points, output = tree.nodes.new("GeometryNodePoints"), tree.nodes.new("NodeGroupOutput")
+    points.inputs["Count"].default_value = 5
+    points.inputs["Radius"].default_value = 0.25
+    points.inputs["Position"].default_value = (1.0, 2.0, 3.0)
+    tree.links.new(points.outputs[0], output.inputs[0])
+    obj = link(bpy.data.meshes.new("carrier"))
+    obj.modifiers.new("nodes", "NODES").node_group = tree
+    scene = sync().scene
+    assert scene.primitive_counts() == {"sphere": 5}
+    ((_, spheres),) = scene.instances[0].geometry.kinds()
+    np.testing.assert_allclose(spheres.center, [(1.0, 2.0, 3.0)] * 5)
+    np.testing.assert_allclose(spheres.radius, 0.25)
+
+
+def test_unknown_geometry_is_named():
+    add_camera()
+    link(bpy.data.volumes.new("smoke"), "cloud")
+    assert len(sync().warnings("'cloud'", "volume")) == 1

@@ -1,0 +1,18 @@
+/* Ray i against primitive i: the hit, its surface, and the same primitive against the ray that leaves the surface. */
+#include "primitive_lib.glsl"
+#include <test_ray>
+
+void main()
+{
+  TestRay test = read_test_ray(TEST_INDEX);
+  Ray ray = Ray(test.origin, test.direction);
+  float t = TEST_HIT(TEST_READ(TEST_INDEX), ray, test.t_max);
+  Surface surface = TEST_SURFACE(TEST_READ(TEST_INDEX), TEST_READ_SURFACE(TEST_INDEX), ray, t);
+  vec3 spawned = ray_spawn(surface, test.next);
+  float t_next = TEST_HIT(TEST_READ(TEST_INDEX), Ray(spawned, test.next), 1e30);
+  out_hit = vec4(t, surface.error, float(surface.material), 0.0);
+  out_position = vec4(surface.position, surface.uv.x);
+  out_normal = vec4(surface.geometric_normal, surface.uv.y);
+  out_shading = vec4(surface.shading_normal, 0.0);
+  out_spawned = vec4(spawned, t_next);
+}

@@ -1,0 +1,229 @@
+"""Random primitives and rays over many scales, and how far float32 may be from the float64 reference.
+
+Every generator takes a numpy Generator and a count. Sizes, distances from the world's origin and distances of the ray's
+origin are log-uniform. What is made is rounded to float32 first, as the GPU sees it, and handed to the reference so.
+"""
+
+import numpy as np
+
+from addon.engine.primitives import Cones, Cylinders, Discs, Planes, Spheres, Triangles
+
+#: Unit roundoff of float32.
+ROUNDOFF = 2.0**-24
+
+#: GLSL's answer is the exact one for a ray and a primitive moved by at most this many roundings of the lengths that it
+#: was computed from: about one for each operation between the inputs and the roots.
+BACKWARD_ROUNDINGS = 16.0
+
+
+def log_uniform(rng, low, high, size):
+    return np.exp(rng.uniform(np.log(low), np.log(high), size))
+
+
+def unit_vectors(rng, n):
+    v = rng.normal(size=(n, 3))
+    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+
+
+def single(array):
+    """Rounded to float32, as float64."""
+    return np.asarray(array, np.float32).astype(np.float64)
+
+
+def placed(rng, n):
+    """Sizes (n,) from 1e-4 to 1e5 and centres (n, 3) up to 1000 sizes from the origin, a fifth of them at it."""
+    size = log_uniform(rng, 1e-4, 1e5, n)
+    away = np.where(rng.random(n) < 0.2, 0.0, log_uniform(rng, 1e-2, 1e3, n))
+    return size, unit_vectors(rng, n) * (size * away)[:, None]
+
+
+def spheres(rng, n, sign=1.0):
+    size, center = placed(rng, n)
+    return Spheres(
+        center=single(center),
+        radius=single(size * sign),
+        material=np.arange(n),
+        pole=unit_vectors(rng, n),
+        meridian=unit_vectors(rng, n),
+    )
+
+
+def cylinders(rng, n, sign=1.0):
+    size, base = placed(rng, n)
+    radius = single(size * log_uniform(rng, 1e-2, 1.0, n))
+    base, axis = single(base), single(unit_vectors(rng, n) * (size * log_uniform(rng, 1e-2, 1.0, n))[:, None])
+    return Cylinders(base=base, apex=base + axis, radius=radius * sign, material=np.arange(n), **side_columns(rng, n))
+
+
+def side_columns(rng, n):
+    return {"meridian": unit_vectors(rng, n), "uv_transform": single(rng.uniform(0.5, 2.0, (n, 4)))}
+
+
+#: Radii of base and apex relative to the height, by the name of the shape.
+CONE_FORMS = {
+    "tip": lambda rng, n: (log_uniform(rng, 0.1, 10.0, n), np.zeros(n)),
+    "wide": lambda rng, n: (np.zeros(n), log_uniform(rng, 0.1, 10.0, n)),
+    "truncated": lambda rng, n: (log_uniform(rng, 0.1, 10.0, n), log_uniform(rng, 0.1, 10.0, n)),
+    "needle": lambda rng, n: (log_uniform(rng, 1e-4, 1e-2, n), np.zeros(n)),
+    "flat": lambda rng, n: (log_uniform(rng, 1e2, 1e4, n), np.zeros(n)),
+    "nearly_cylindrical": lambda rng, n: (np.ones(n), 1.0 + rng.uniform(-1.0, 1.0, n) * log_uniform(rng, 1e-7, 1e-2, n)),
+}
+
+
+def cones(rng, n, form="truncated", sign=1.0):
+    size, base = placed(rng, n)
+    base_radius, apex_radius = CONE_FORMS[form](rng, n)
+    height = size / np.maximum(np.maximum(base_radius, apex_radius), 1.0)
+    base, axis = single(base), single(unit_vectors(rng, n) * height[:, None])
+    return Cones(
+        base=base,
+        apex=base + axis,
+        base_radius=single(sign * height * base_radius),
+        apex_radius=single(sign * height * apex_radius),
+        material=np.arange(n),
+        planar=rng.integers(0, 2, n),
+        **side_columns(rng, n),
+    )
+
+
+def discs(rng, n):
+    size, center = placed(rng, n)
+    normal = single(unit_vectors(rng, n))
+    return Discs(
+        center=single(center), normal=normal, radius=single(size), material=np.arange(n), **side_columns(rng, n)
+    )
+
+
+def planes(rng, n):
+    """Planes whose equation is exact in float32: the reference takes W from the point."""
+    size, point = placed(rng, n)
+    normal = unit_vectors(rng, n)
+    return Planes(
+        point=point, normal=normal, meridian=unit_vectors(rng, n), tile=size * log_uniform(rng, 0.1, 10.0, n)
+    )
+
+
+def triangles(rng, n, sliver=1.0, one_sided=0):
+    """Triangles; `sliver` < 1 puts the third vertex that near to the line through the other two."""
+    size, center = placed(rng, n)
+    p0, p1, p2 = (unit_vectors(rng, n) * size[:, None] for _ in range(3))
+    if sliver < 1.0:
+        along = rng.uniform(-0.5, 1.5, n)[:, None]
+        p2 = p0 + along * (p1 - p0) + unit_vectors(rng, n) * (size * log_uniform(rng, sliver, 1.0, n))[:, None]
+    flip = np.sign(np.sum(np.cross(p1 - p0, p2 - p0) * unit_vectors(rng, n), axis=-1, keepdims=True))
+    normals = [single(flip * unit_vectors(rng, n)) for _ in range(3)]
+    return Triangles(
+        **{name: single(center + p) for name, p in (("p0", p0), ("p1", p1), ("p2", p2))},
+        **dict(zip(("n0", "n1", "n2"), normals, strict=True)),
+        **{name: single(rng.random((n, 2))) for name in ("uv0", "uv1", "uv2")},
+        material=np.arange(n),
+        one_sided=np.full(n, one_sided),
+    )
+
+
+def exactly(primitives):
+    """The primitives that the GPU sees: made again from their float32 records, so that the reference has no other."""
+    hit, surface = primitives.records()
+    hit = {name: hit[name].astype(np.float64) for name in hit.dtype.names}
+    values = {column.name: getattr(primitives, column.name) for column in primitives.columns}
+    values |= {name: values[name] for name in values}
+    for name in ("meridian", "n0", "n1", "n2", "uv1", "uv2", "uv_transform"):
+        if name in surface.dtype.names:
+            values[name] = surface[name].astype(np.float64)
+    for name in hit:
+        if name in values:
+            values[name] = hit[name]
+    if primitives.kind in ("cylinder", "cone"):
+        values["apex"] = hit["base"] + hit["axis"]
+    if primitives.kind == "plane":
+        length = np.linalg.norm(hit["normal"], axis=-1)
+        values["point"] = hit["normal"] * (-hit["offset"] / length**2)[:, None]
+        values["meridian"], values["tile"] = surface["meridian"].astype(np.float64), primitives.tile
+    return type(primitives)(**values)
+
+
+def middle_and_extent(primitives):
+    """A point (n, 3) inside each primitive and the distance (n,) of its farthest point from there."""
+    if primitives.kind == "plane":
+        return np.asarray(primitives.point), np.asarray(primitives.tile)
+    lower, upper = (np.asarray(corner, np.float64) for corner in primitives.bounds())
+    return (lower + upper) / 2.0, np.linalg.norm(upper - lower, axis=-1) / 2.0
+
+
+def rays(rng, primitives, near=1e-2, far=1e3):
+    """Rays towards random points around the middles, from `near` to `far` extents away: origin, direction, (n, 3)."""
+    middle, extent = middle_and_extent(primitives)
+    n = len(primitives)
+    origin = single(middle + unit_vectors(rng, n) * (extent * log_uniform(rng, near, far, n))[:, None])
+    target = middle + unit_vectors(rng, n) * (extent * rng.random(n) ** 0.5)[:, None]
+    direction = target - origin
+    return origin, single(direction / np.linalg.norm(direction, axis=-1, keepdims=True))
+
+
+def normalized(v):
+    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+
+
+def perturbed(primitives, origin, direction, roundings=BACKWARD_ROUNDINGS, t_min=0.0):
+    """The reference's t for the pair as it is (n,), and for pairs moved by the backward error (k, n).
+
+    Moved are: the origin along three axes, the direction across itself, the primitive's sizes.
+    """
+    direction = normalized(direction)
+    middle, extent = middle_and_extent(primitives)
+    # A plane's equation subtracts numbers of the size of the coordinates, everything else the ray's origin first.
+    base = np.asarray(primitives.p0) if primitives.kind == "triangle" else middle
+    reach = np.linalg.norm(base - origin, axis=-1) + extent
+    if primitives.kind == "plane":
+        reach += np.linalg.norm(origin, axis=-1) + np.linalg.norm(middle, axis=-1)
+    moved = (roundings * ROUNDOFF * reach)[:, None]
+    across = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction), axis=-1)])
+    across = normalized(across)
+    turns = [sign * roundings * ROUNDOFF * side for side in (across, np.cross(direction, across)) for sign in (1, -1)]
+    others = [primitives.reference_hit(origin + moved * step, direction, t_min) for step in (*np.eye(3), *-np.eye(3))]
+    others += [primitives.reference_hit(origin, normalized(direction + turn), t_min) for turn in turns]
+    for resized in resizings(primitives, roundings * ROUNDOFF):
+        others.append(resized.reference_hit(origin, direction, t_min))
+    return primitives.reference_hit(origin, direction, t_min), np.stack(others)
+
+
+def resizings(primitives, amount):
+    """The primitives a little larger and a little smaller."""
+    if primitives.kind == "plane":
+        return
+    names = [c.name for c in primitives.columns if "radius" in c.name]
+    for factor in (1.0 + amount, 1.0 - amount):
+        values = {name: getattr(primitives, name) * factor for name in names}
+        if primitives.kind in ("cylinder", "cone"):
+            middle = (primitives.base + primitives.apex) / 2.0
+            values |= {name: middle + (getattr(primitives, name) - middle) * factor for name in ("base", "apex")}
+        if primitives.kind == "triangle":
+            middle = (primitives.p0 + primitives.p1 + primitives.p2) / 3.0
+            values |= {name: middle + (getattr(primitives, name) - middle) * factor for name in ("p0", "p1", "p2")}
+        yield primitives._with(values)
+
+
+def assert_same_hits(t, primitives, origin, direction, roundings=BACKWARD_ROUNDINGS, t_min=0.0):
+    """t (n,) of GLSL, inf for a miss, is the reference's up to the backward error; at least a quarter must be hits that
+    the error cannot flip, so that the test says something. Returns which rows are hits in both."""
+    exact, others = perturbed(primitives, origin, direction, roundings, t_min)
+    assert not np.isnan(t).any()
+    hit = np.isfinite(exact)
+    same = (np.isfinite(others) == hit).all(axis=0)
+    wrong = same & (np.isfinite(t) != hit)
+    assert not wrong.any(), describe(wrong, primitives, origin, direction, t, exact)
+    both = hit & np.isfinite(t)
+    with np.errstate(invalid="ignore"):
+        spread = np.where(np.isfinite(others), np.abs(others - exact), 0.0).sum(axis=0)
+        bound = spread + roundings * ROUNDOFF * np.where(hit, exact, 0.0)
+        off = both & same & (np.abs(t - exact) > bound)
+    assert not off.any(), describe(off, primitives, origin, direction, t, exact)
+    return both & same
+
+
+def describe(rows, primitives, origin, direction, t, exact):
+    """The first of the failing rows, in full."""
+    i = int(np.argmax(rows))
+    columns = {c.name: np.asarray(getattr(primitives, c.name)[i]).tolist() for c in primitives.columns}
+    ray = f"origin {origin[i].tolist()} direction {direction[i].tolist()}"
+    return f"{int(rows.sum())} of {len(rows)}; number {i}: t {t[i]!r}, float64 {exact[i]!r}; {ray}; {columns}"
