@@ -111,7 +111,7 @@ def studio(h=256):
         da = np.abs((np.degrees(lon)-az+180)%360-180)/w; de = np.abs(np.degrees(lat)-el)/hh
         s = np.clip((1-np.maximum(da,de))/.15,0,1)[...,None]
         return s*power
-    return c + box(-150,50,22,16,4) + box(-30,45,14,22,3) + box(100,55,40,10,1.5)
+    return c + box(-150,50,22,16,8) + box(-30,45,14,22,6) + box(100,55,40,10,1.5)
 
 def two_fold(atoms):
     """center & axis"""
@@ -164,7 +164,7 @@ def main():
     # props
     glass = shader("Glass","ShaderNodeBsdfGlass", IOR=1.5, Roughness=0.0)
     mirror = shader("Mirror","ShaderNodeBsdfGlossy", Roughness=0.0, Color=(.92,.93,.95,1))
-    gold = shader("Gold","ShaderNodeBsdfGlossy", Roughness=0.0, Color=(*rgb("e8b45a"),1))
+    gold = principled("Cone", rgb(E("CONEC","e39a1f")), lift=.05, Roughness=.05)
     im = image_of("Planet", planet()); 
     globe = principled("Globe",(1,1,1),lift=.05,image=im,Roughness=.05)
     floor = principled("Floor", rgb(E("FLOOR","c9ced6")), Roughness=.05 if E("GLOSS") else .6)

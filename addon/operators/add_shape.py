@@ -115,7 +115,7 @@ class CONIC_OT_plane_add(AddShape, bpy.types.Operator):
     bl_idname = "conic.plane_add"
     bl_label = "Plane"
     primitive = "PLANE"
-    size: length("Size", "Side of the square that stands for the plane; an image covers it once", default=2.0)
+    size: length("Size", "Side of the square that stands for the plane", default=2.0)
 
     def proxy(self):
         return proxy_mesh.plane(self.size)

@@ -123,8 +123,8 @@ def disc(radius):
 
 
 def plane(size):
-    """A square of `size` about the origin that faces up the Z axis: uv = (x, y) in units of the square, as
-    the plane without end goes on beyond it."""
+    """A square of `size` about the origin that faces up the Z axis: uv = (x, y), as the plane without end
+    goes on beyond it: an image repeats every unit."""
     half = size / 2.0
     vertices = np.array([(-half, -half, 0.0), (half, -half, 0.0), (half, half, 0.0), (-half, half, 0.0)])
-    return ProxyMesh(vertices, [[0, 1, 2, 3]], vertices[:, :2] / size + 0.5, np.zeros(1, bool))
+    return ProxyMesh(vertices, [[0, 1, 2, 3]], vertices[:, :2], np.zeros(1, bool))

@@ -15,21 +15,20 @@ vec3 triangle_edges(Triangle triangle, Ray ray)
               dot(cross(b - a, b + a), ray.direction));
 }
 
-/* Nearest t in (0, t_max), else t_max. */
+/* Nearest t in (0, t_max), else t_max: the weighted mean of the vertices' t. Unlike the distance from the plane, which a
+ * sliver's normal hardly tells, it never leaves the triangle. The edges' sum is -2 times direction . normal. */
 float triangle_hit(Triangle triangle, Ray ray, float t_max)
 {
   vec3 edges = triangle_edges(triangle, ray);
   float lowest = min(edges.x, min(edges.y, edges.z));
   float highest = max(edges.x, max(edges.y, edges.z));
-  if (lowest < 0.0 && highest > 0.0) {
+  float sum = edges.x + edges.y + edges.z;
+  if ((lowest < 0.0 && highest > 0.0) || sum == 0.0 || (triangle.one_sided > 0.5 && sum < 0.0)) {
     return t_max;
   }
-  vec3 normal = cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0);
-  float facing = dot(normal, ray.direction);
-  if (facing == 0.0 || (triangle.one_sided > 0.5 && facing > 0.0)) {
-    return t_max;
-  }
-  float t = dot(normal, triangle.p0 - ray.origin) / facing;
+  vec3 along = vec3(dot(triangle.p0 - ray.origin, ray.direction), dot(triangle.p1 - ray.origin, ray.direction),
+                    dot(triangle.p2 - ray.origin, ray.direction));
+  float t = dot(edges / sum, along);
   return (t > 0.0 && t < t_max) ? t : t_max;
 }
 

@@ -190,7 +190,7 @@ def test_stretched_and_mirrored_plane_faces_along_its_z():
     obj.matrix_world = Matrix.Diagonal((-2.0, 3.0, 1.0, 1.0))
     obj.conic.primitive = "PLANE"
     (plane,) = sync().scene.planes
-    np.testing.assert_allclose(plane.normal, [(0.0, 0.0, 1.0)])
+    np.testing.assert_allclose(plane.normal, [(0.0, 0.0, 1.0)], atol=1e-6)
 
 
 def test_scene_setting():

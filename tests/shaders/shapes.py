@@ -182,25 +182,27 @@ def perturbed(primitives, origin, direction, roundings=BACKWARD_ROUNDINGS, t_min
     turns = [sign * roundings * ROUNDOFF * side for side in (across, np.cross(direction, across)) for sign in (1, -1)]
     others = [primitives.reference_hit(origin + moved * step, direction, t_min) for step in (*np.eye(3), *-np.eye(3))]
     others += [primitives.reference_hit(origin, normalized(direction + turn), t_min) for turn in turns]
-    for resized in resizings(primitives, roundings * ROUNDOFF):
+    for resized in resizings(primitives, roundings * ROUNDOFF, moved):
         others.append(resized.reference_hit(origin, direction, t_min))
     return primitives.reference_hit(origin, direction, t_min), np.stack(others)
 
 
-def resizings(primitives, amount):
-    """The primitives a little larger and a little smaller."""
-    if primitives.kind == "plane":
-        return
+def resizings(primitives, amount, moved):
+    """The primitives with radii, and with the middle or the vertices' relative places, a little changed."""
     names = [c.name for c in primitives.columns if "radius" in c.name]
-    for factor in (1.0 + amount, 1.0 - amount):
+    for factor in (1.0 + amount, 1.0 - amount) if names else ():
         values = {name: getattr(primitives, name) * factor for name in names}
         if primitives.kind in ("cylinder", "cone"):
             middle = (primitives.base + primitives.apex) / 2.0
             values |= {name: middle + (getattr(primitives, name) - middle) * factor for name in ("base", "apex")}
-        if primitives.kind == "triangle":
-            middle = (primitives.p0 + primitives.p1 + primitives.p2) / 3.0
-            values |= {name: middle + (getattr(primitives, name) - middle) * factor for name in ("p0", "p1", "p2")}
         yield primitives._with(values)
+    if primitives.kind == "triangle":  # each vertex has roundings of its own, which turn a sliver's plane
+        p0, p1, p2 = primitives.p0, primitives.p1, primitives.p2
+        normal = normalized(np.cross(p1 - p0, p2 - p0))
+        inwards = [normalized((p0 + p1 + p2) / 3.0 - p) for p in (p0, p1, p2)]
+        for name, inward in zip(("p0", "p1", "p2"), inwards, strict=True):
+            for way in (normal, -normal, inward, -inward):
+                yield primitives._with({name: getattr(primitives, name) + moved * way})
 
 
 def assert_same_hits(t, primitives, origin, direction, roundings=BACKWARD_ROUNDINGS, t_min=0.0):

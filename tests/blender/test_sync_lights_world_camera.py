@@ -1,0 +1,249 @@
+"""Lights in Blender's units, the world, and cameras of renders and views."""
+
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Euler, Matrix, Vector
+
+from addon.engine.scene import LightKind
+from addon.sync.camera import camera_of_view
+from addon.sync.scene_sync import sync_settings
+from tests.blender.building import add_camera, image, link, node, sync
+
+SINCE_4_5 = pytest.mark.skipif(bpy.app.version < (4, 5, 0), reason="Blender 4.5 brought this property")
+
+
+def light(kind, matrix=None, **settings):
+    """The engine light of a Blender light, and the sync."""
+    add_camera()
+    data = bpy.data.lights.new("lamp", kind)
+    for key, value in settings.items():
+        setattr(data, key, value)
+    obj = link(data, "lamp")
+    if matrix is not None:
+        obj.matrix_world = matrix
+    synced = sync()
+    (made,) = synced.scene.lights
+    return made, synced
+
+
+def test_point_light():
+    made, synced = light("POINT", Matrix.Translation((1, 2, 3)), energy=100.0, color=(1.0, 0.5, 0.25))
+    assert made.kind == LightKind.POINT and made.position == (1.0, 2.0, 3.0)
+    # A white diffuse plane facing it at distance 2 has radiance 0.63326 in Cycles.
+    assert np.array(made.color) / 4.0 == pytest.approx((0.6332574, 0.3166287, 0.1583143), rel=1e-5)
+    assert not synced.messages
+
+
+def test_sun():
+    turned = Matrix.Translation((9, 9, 9)) @ Euler((0.3, -0.5, 2.0)).to_matrix().to_4x4()
+    made, _ = light("SUN", turned, energy=3.0, angle=0.0)
+    assert made.kind == LightKind.SUN
+    np.testing.assert_allclose(made.position, turned.to_3x3() @ Vector((0, 0, 1)), atol=1e-6)
+    assert made.color == pytest.approx((0.9549297,) * 3, rel=1e-5)  # as in Cycles
+
+
+def test_spot_is_a_point_of_the_same_power():
+    made, synced = light("SPOT", energy=100.0)
+    assert made.color[0] / 4.0 == pytest.approx(0.6332574, rel=1e-5) and synced.warnings("'lamp'", "spot")
+
+
+def test_area_is_as_bright_straight_ahead():
+    made, synced = light("AREA", energy=100.0, size=0.01)
+    assert made.color[0] / 4.0 == pytest.approx(2.53301, rel=1e-4)  # measured in Cycles
+    assert synced.warnings("'lamp'", "area")
+
+
+@SINCE_4_5
+@pytest.mark.parametrize(
+    ("settings", "radiance"),
+    (
+        ({"exposure": 1.0}, 1.2665149),
+        ({"normalize": False}, 2.5330298),
+        ({"use_temperature": True, "temperature": 3000}, 1.1213984),
+    ),
+)
+def test_light_settings_of_4_5_as_measured_in_cycles(settings, radiance):
+    made, _ = light("POINT", energy=100.0, **settings)
+    assert made.color[0] / 4.0 == pytest.approx(radiance, rel=1e-3)
+
+
+@SINCE_4_5
+def test_sun_that_is_not_normalized():
+    assert light("SUN", energy=3.0, angle=0.0, normalize=False)[0].color[0] == pytest.approx(0.95493, rel=1e-4)
+
+
+def test_light_nodes():
+    add_camera()
+    data = bpy.data.lights.new("lamp", "SUN")
+    data.energy = np.pi
+    if bpy.app.version < (5, 0, 0):
+        data.use_nodes = True
+    emission = next(n for n in data.node_tree.nodes if n.type == "EMISSION")
+    emission.inputs["Strength"].default_value = 2.0
+    emission.inputs["Color"].default_value = (1.0, 0.5, 0.25, 1.0)
+    link(data)
+    assert sync().scene.lights[0].color == pytest.approx((2.0, 1.0, 0.5))
+
+
+def test_soft_lights_are_named_in_one_message():
+    add_camera()
+    for name in "abc":
+        data = bpy.data.lights.new(name, "POINT")
+        data.shadow_soft_size = 0.25
+        link(data, name)
+    messages = sync().messages
+    assert len(messages) == 1 and messages[0][0] == "INFO" and "'a' and 2 more" in messages[0][1]
+
+
+def test_instanced_and_hidden_lights():
+    add_camera()
+    data = bpy.data.lights.new("lamp", "POINT")
+    link(data, "hidden", hide_viewport=True)
+    collection = bpy.data.collections.new("kept aside")
+    collection.objects.link(bpy.data.objects.new("inner", data))
+    for x in (1.0, 2.0):
+        link(None, "place", location=(x, 0, 0), instance_type="COLLECTION", instance_collection=collection)
+    assert sorted(made.position[0] for made in sync().scene.lights) == [1.0, 2.0]
+
+
+def world(**background):
+    add_camera()
+    made = bpy.data.worlds.new("sky")
+    bpy.context.scene.world = made
+    if bpy.app.version < (5, 0, 0):
+        made.use_nodes = True
+    made.node_tree.nodes.clear()
+    output = made.node_tree.nodes.new("ShaderNodeOutputWorld")
+    return made, made.node_tree, node(made.node_tree, "Background", output.inputs["Surface"], **background)
+
+
+def test_no_world_is_black():
+    add_camera()
+    assert sync().scene.world.color == (0.0, 0.0, 0.0)
+
+
+def test_world_of_a_color():
+    world(Color=(0.1, 0.2, 0.3, 1.0), Strength=2.0)
+    synced = sync()
+    assert synced.scene.world.color == pytest.approx((0.2, 0.4, 0.6)) and synced.scene.world.image == -1
+    assert not synced.messages
+
+
+def environment(tree, background):
+    pixels = np.zeros((4, 8, 4), np.float32)
+    pixels[..., 0] = np.arange(8)
+    pixels[..., 3] = 1.0
+    made = node(tree, "TexEnvironment", background.inputs["Color"])
+    made.image = image(pixels, "panorama", float_buffer=True)
+    return made
+
+
+def test_world_of_an_image():
+    _, tree, background = world(Strength=2.0)
+    environment(tree, background)
+    scene = sync().scene
+    assert scene.world.color == (2.0, 2.0, 2.0)
+    np.testing.assert_allclose(scene.images[scene.world.image].pixels[0, :, 0], np.arange(8))
+
+
+def test_world_image_turned_about_z():
+    _, tree, background = world()
+    texture = environment(tree, background)
+    mapping = node(tree, "Mapping", texture.inputs["Vector"], Rotation=(0.0, 0.0, np.pi / 2))
+    node(tree, "TexCoord", mapping.inputs["Vector"], output="Generated")
+    synced = sync()
+    # Towards +X, u = 1/2, Cycles looks up the direction +Y: u = 1/4, column 2.
+    assert synced.scene.images[synced.scene.world.image].pixels[0, 4, 0] == 2.0 and not synced.messages
+
+
+def test_world_image_turned_otherwise_is_reported():
+    _, tree, background = world()
+    texture = environment(tree, background)
+    node(tree, "Mapping", texture.inputs["Vector"], Rotation=(0.5, 0.0, 0.0))
+    assert len(sync().warnings("'sky'", "'Mapping'", "unturned")) == 1
+
+
+def test_world_that_is_not_understood():
+    _, tree, background = world(Color=(0.1, 0.2, 0.3, 1.0))
+    node(tree, "TexNoise", background.inputs["Color"], output="Color")
+    synced = sync()
+    assert synced.scene.world.color == pytest.approx((0.1, 0.2, 0.3))
+    assert len(synced.warnings("'sky'", "'Noise Texture'")) == 1
+
+
+def projected(camera, point):
+    """Where an engine camera shows a world point in its picture: 0 to 1 from the left and from the bottom."""
+    x, y, z = (np.linalg.inv(camera.matrix) @ (*point, 1.0))[:3]
+    if not camera.orthographic:
+        x, y = x / -z, y / -z
+    left, right, bottom, top = camera.window
+    return (x - left) / (right - left), (y - bottom) / (top - bottom)
+
+
+@pytest.mark.parametrize("fit", ("AUTO", "HORIZONTAL", "VERTICAL"))
+@pytest.mark.parametrize("size", ((64, 48), (48, 64)))
+@pytest.mark.parametrize("kind", ("PERSP", "ORTHO"))
+@pytest.mark.parametrize("aspect", (1.0, 2.0))
+def test_camera_shows_points_where_blender_does(kind, size, fit, aspect):
+    from bpy_extras.object_utils import world_to_camera_view
+
+    camera = add_camera(type=kind, sensor_fit=fit, shift_x=0.1, shift_y=-0.2, lens=30.0, ortho_scale=7.0)
+    camera.rotation_euler = (0.4, 0.2, 0.6)
+    camera.scale = (2.0, 3.0, 0.5)
+    render = bpy.context.scene.render
+    render.pixel_aspect_x = aspect
+    render.resolution_x, render.resolution_y = size
+    made = sync(*size).scene.camera
+    bpy.context.view_layer.update()
+    camera.scale = (1.0, 1.0, 1.0)  # world_to_camera_view minds the scale, Blender's renders do not
+    bpy.context.view_layer.update()
+    for point in ((0.0, 0.0, 0.0), (1.0, 0.5, -2.0), (-2.0, 1.0, 3.0)):
+        expected = world_to_camera_view(bpy.context.scene, camera, Vector(point))
+        assert projected(made, point) == pytest.approx(tuple(expected)[:2], abs=2e-5)
+    assert made.clip == pytest.approx((camera.data.clip_start, camera.data.clip_end))
+    np.testing.assert_allclose(made.matrix[:3, :3].T @ made.matrix[:3, :3], np.eye(3), atol=1e-6)
+
+
+def test_panorama_is_reported():
+    add_camera(type="PANO")
+    synced = sync()
+    assert not synced.scene.camera.orthographic and synced.warnings("'camera'", "panoramic")
+
+
+def view(window, matrix):
+    return SimpleNamespace(window_matrix=window, view_matrix=matrix.inverted(), is_perspective=window[3][2] != 0.0)
+
+
+@pytest.mark.parametrize("kind", ("PERSP", "ORTHO"))
+def test_view_through_a_camera_is_the_cameras(kind):
+    camera = add_camera(type=kind, shift_x=0.1, lens=30.0)
+    camera.rotation_euler = (0.4, 0.2, 0.6)
+    made = sync().scene.camera
+    window = camera.calc_matrix_camera(bpy.context.evaluated_depsgraph_get(), x=64, y=48)
+    seen = camera_of_view(None, view(window, camera.matrix_world))
+    for point in ((0.0, 0.0, 0.0), (1.0, 0.5, -2.0)):
+        assert projected(seen, point) == pytest.approx(projected(made, point), abs=1e-5)
+    if kind == "PERSP":
+        assert seen.clip == pytest.approx(made.clip, rel=1e-3)
+
+
+def test_orthographic_view_sees_what_is_behind_its_eye():
+    window = Matrix(((0.1, 0, 0, 0), (0, 0.2, 0, 0), (0, 0, -2 / 2000, 0), (0, 0, 0, 1)))  # from -1000 to 1000
+    seen = camera_of_view(None, view(window, Matrix.Translation((1, 2, 3))))
+    assert seen.orthographic and seen.window == pytest.approx((-10, 10, -5, 5))
+    np.testing.assert_allclose(seen.matrix[:3, 3], (1, 2, 1003), rtol=1e-5)
+    assert seen.clip == pytest.approx((0.0, 2000.0), rel=1e-5)
+
+
+def test_settings():
+    scene = bpy.context.scene
+    scene.conic.samples, scene.conic.preview_samples, scene.conic.max_depth = 7, 3, 5
+    scene.conic.shadows, scene.conic.weight_cutoff = "OPAQUE", 1.0
+    scene.render.film_transparent = True
+    settings = sync_settings(scene)
+    assert (settings.samples, settings.max_depth, settings.tinted_shadows) == (7, 5, False)
+    assert settings.film_transparent and settings.weight_cutoff < 1.0
+    assert sync_settings(scene, preview=True).samples == 3

@@ -1,0 +1,318 @@
+"""Materials: node trees as the engine's colour class, and what is said about the rest."""
+
+import bpy
+import numpy as np
+import pytest
+
+from tests.blender.building import add_camera, image, material, node, quad, sync
+
+METAL_BASE = (0.9, 0.6, 0.3, 1.0)
+
+
+def shaded(build):
+    """The engine material, scene and warnings of a quad whose tree `build(tree, surface socket)` makes."""
+    add_camera()
+    made, tree, output = material("stuff")
+    build(tree, output)
+    quad().data.materials.append(made)
+    synced = sync()
+    (instance,) = synced.scene.instances
+    return synced.scene.materials[instance.materials[0]], synced
+
+
+def of_node(kind, **inputs):
+    """The engine material of one shader node alone; it must not be reported."""
+    read, synced = shaded(lambda tree, output: node(tree, kind, output.inputs["Surface"], **inputs))
+    assert not synced.messages
+    return read
+
+
+def test_diffuse():
+    read = of_node("BsdfDiffuse", Color=(0.2, 0.4, 0.6, 1.0))
+    assert read.diffuse == pytest.approx((0.2, 0.4, 0.6))
+    assert read.reflect == read.transmit == read.glow == read.highlight == (0.0, 0.0, 0.0) and not read.fresnel
+
+
+def test_smooth_plastic_reflects_by_fresnel():
+    read = of_node("BsdfPrincipled", Base_Color=(0.2, 0.4, 0.6, 1.0), Roughness=0.0, IOR=1.4)
+    assert read.fresnel and read.ior == pytest.approx(1.4)
+    assert read.diffuse == pytest.approx((0.2, 0.4, 0.6)) and read.reflect == pytest.approx((1.0, 1.0, 1.0))
+
+
+def test_rough_plastic_has_a_highlight_and_loses_what_it_reflects():
+    read = of_node("BsdfPrincipled", Base_Color=(0.5, 0.5, 0.5, 1.0), Roughness=0.5, IOR=1.5)
+    assert read.reflect == (0.0, 0.0, 0.0) and not read.fresnel
+    assert read.diffuse == pytest.approx((0.48,) * 3)
+    assert read.highlight == pytest.approx((0.04 * 4.0,) * 3) and read.shine == pytest.approx(7.5)
+
+
+def test_specular_level_changes_the_index_of_an_opaque_body():
+    none = of_node("BsdfPrincipled", Roughness=0.0, Specular_IOR_Level=0.0)
+    assert not none.fresnel and none.reflect == (0.0, 0.0, 0.0)
+
+
+def test_specular_level_doubled():
+    twice = of_node("BsdfPrincipled", Roughness=0.0, Specular_IOR_Level=1.0)
+    assert ((twice.ior - 1.0) / (twice.ior + 1.0)) ** 2 == pytest.approx(0.08)
+
+
+def test_smooth_metal_is_a_mirror_without_fresnel():
+    read = of_node("BsdfPrincipled", Base_Color=METAL_BASE, Metallic=1.0, Roughness=0.0)
+    assert read.reflect == pytest.approx(METAL_BASE[:3]) and not read.fresnel
+    assert read.diffuse == read.transmit == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("roughness", (0.2, 0.3, 0.5, 0.8, 1.0))
+def test_rough_metal_fades_from_mirror_to_diffuse_and_is_never_black(roughness):
+    read = of_node("BsdfPrincipled", Base_Color=METAL_BASE, Metallic=1.0, Roughness=roughness)
+    mirror, diffuse = read.reflect[0] / METAL_BASE[0], read.diffuse[0] / METAL_BASE[0]
+    assert mirror > 0.0 if roughness < 0.5 else mirror == 0.0
+    assert 0.0 < diffuse <= 1.0 - mirror + 1e-6
+    assert read.highlight[0] > 0.0 or roughness == 1.0
+
+
+def test_glass_of_principled_takes_the_root_at_each_surface():
+    read = of_node(
+        "BsdfPrincipled", Base_Color=(0.25, 0.81, 1.0, 1.0), Transmission_Weight=1.0, Roughness=0.0, IOR=1.33
+    )
+    assert read.fresnel and read.ior == pytest.approx(1.33)
+    assert read.transmit == pytest.approx((0.5, 0.9, 1.0)) and read.reflect == pytest.approx((1.0, 1.0, 1.0))
+    assert read.diffuse == (0.0, 0.0, 0.0)
+
+
+def test_glass_bsdf_colors_reflection_too():
+    read = of_node("BsdfGlass", Color=(0.5, 0.9, 1.0, 1.0), IOR=1.45)
+    assert read.fresnel and read.ior == pytest.approx(1.45)
+    assert read.transmit == read.reflect == pytest.approx((0.5, 0.9, 1.0))
+
+
+def test_refraction_does_not_reflect():
+    read = of_node("BsdfRefraction", Color=(0.5, 0.9, 1.0, 1.0), IOR=1.2, Roughness=0.0)
+    assert not read.fresnel and read.ior == pytest.approx(1.2) and read.reflect == (0.0, 0.0, 0.0)
+    assert read.transmit == pytest.approx((0.5, 0.9, 1.0))
+
+
+def test_transparent_does_not_bend():
+    read = of_node("BsdfTransparent", Color=(0.5, 0.9, 1.0, 1.0))
+    assert not read.fresnel and read.ior == 1.0 and read.transmit == pytest.approx((0.5, 0.9, 1.0))
+
+
+def test_alpha():
+    read = of_node("BsdfPrincipled", Base_Color=(1.0, 1.0, 1.0, 1.0), Roughness=1.0, Alpha=0.25, Specular_IOR_Level=0.0)
+    assert read.transmit == pytest.approx((0.75,) * 3) and read.ior == 1.0
+    assert read.diffuse == pytest.approx((0.25,) * 3)
+
+
+def test_emission():
+    read = of_node("Emission", Color=(1.0, 0.5, 0.25, 1.0), Strength=8.0)
+    assert read.glow == pytest.approx((8.0, 4.0, 2.0)) and read.diffuse == (0.0, 0.0, 0.0)
+
+
+def test_emission_of_principled():
+    read = of_node("BsdfPrincipled", Emission_Color=(1.0, 0.5, 0.25, 1.0), Emission_Strength=2.0)
+    assert read.glow == pytest.approx((2.0, 1.0, 0.5))
+
+
+def test_glossy_is_a_metal():
+    node_type = "BsdfGlossy" if bpy.app.version >= (5, 0, 0) else "BsdfAnisotropic"
+    read = of_node(node_type, Color=METAL_BASE, Roughness=0.0)
+    assert read.reflect == pytest.approx(METAL_BASE[:3]) and not read.fresnel
+
+
+def mix(tree, output, factor=0.25, second="Emission"):
+    """A Mix Shader of red diffuse and another shader."""
+    made = node(tree, "MixShader", output.inputs["Surface"])
+    made.inputs[0].default_value = factor
+    node(tree, "BsdfDiffuse", made.inputs[1], Color=(1.0, 0.0, 0.0, 1.0))
+    node(tree, second, made.inputs[2])
+    return made
+
+
+def test_mix_shader_by_a_constant():
+    read, synced = shaded(mix)
+    assert read.diffuse == pytest.approx((0.75, 0.0, 0.0)) and read.glow == pytest.approx((0.25,) * 3)
+    assert not synced.messages
+
+
+def test_mix_shader_by_a_value_node():
+    def build(tree, output):
+        node(tree, "Value", mix(tree, output).inputs[0]).outputs[0].default_value = 0.5
+
+    read, synced = shaded(build)
+    assert read.diffuse == pytest.approx((0.5, 0.0, 0.0)) and not synced.messages
+
+
+def test_mix_shader_by_fresnel_is_a_coat():
+    def build(tree, output):
+        made = mix(tree, output, second="BsdfAnisotropic")
+        tree.nodes["Glossy BSDF"].inputs["Roughness"].default_value = 0.0
+        tree.nodes["Glossy BSDF"].inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+        node(tree, "Fresnel", made.inputs[0], IOR=1.33)
+
+    read, synced = shaded(build)
+    assert read.fresnel and read.ior == pytest.approx(1.33) and not synced.messages
+    assert read.diffuse == pytest.approx((1.0, 0.0, 0.0)) and read.reflect == pytest.approx((1.0, 1.0, 1.0))
+
+
+def test_mix_shader_by_a_texture_is_reported():
+    read, synced = shaded(lambda tree, output: node(tree, "TexNoise", mix(tree, output).inputs[0]))
+    assert read.diffuse == pytest.approx((0.5, 0.0, 0.0))
+    assert len(synced.warnings("'stuff'", "'Noise Texture'", "half")) == 1 == len(synced.messages)
+
+
+def test_add_shader():
+    def build(tree, output):
+        made = node(tree, "AddShader", output.inputs["Surface"])
+        node(tree, "BsdfDiffuse", made.inputs[0], Color=(0.5, 0.0, 0.0, 1.0))
+        node(tree, "BsdfTransparent", made.inputs[1], Color=(0.0, 0.5, 0.0, 1.0))
+
+    read, _ = shaded(build)
+    assert read.diffuse == pytest.approx((0.5, 0.0, 0.0)) and read.transmit == pytest.approx((0.0, 0.5, 0.0))
+
+
+def test_volume_absorption():
+    def build(tree, output):
+        node(tree, "BsdfGlass", output.inputs["Surface"])
+        node(tree, "VolumeAbsorption", output.inputs["Volume"], Color=(0.0, 0.5, 1.0, 1.0), Density=2.0)
+
+    read, synced = shaded(build)
+    assert read.absorption == pytest.approx((2.0, 1.0, 0.0)) and not synced.messages
+
+
+def test_volume_alone_has_no_surface():
+    read, _ = shaded(lambda tree, output: node(tree, "VolumeAbsorption", output.inputs["Volume"], Density=2.0))
+    assert read.transmit == (1.0, 1.0, 1.0) and read.ior == 1.0
+
+
+def test_reroutes_muted_nodes_and_groups_are_followed():
+    def build(tree, output):
+        group = bpy.data.node_groups.new("group", "ShaderNodeTree")
+        group.interface.new_socket("Tint", in_out="INPUT", socket_type="NodeSocketColor")
+        group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+        inside, outside = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+        diffuse = node(group, "BsdfDiffuse", outside.inputs[0])
+        group.links.new(inside.outputs[0], diffuse.inputs["Color"])
+        used = node(tree, "Group")
+        used.node_tree = group
+        reroute = tree.nodes.new("NodeReroute")
+        muted = node(tree, "AddShader", output.inputs["Surface"])
+        muted.mute = True
+        tree.links.new(used.outputs[0], reroute.inputs[0])
+        tree.links.new(reroute.outputs[0], muted.inputs[0])
+        node(tree, "RGB", used.inputs[0]).outputs[0].default_value = (0.1, 0.2, 0.3, 1.0)
+
+    read, synced = shaded(build)
+    assert read.diffuse == pytest.approx((0.1, 0.2, 0.3)) and not synced.messages
+
+
+def test_unlinked_group_input_takes_the_groups_own_value():
+    def build(tree, output):
+        group = bpy.data.node_groups.new("group", "ShaderNodeTree")
+        group.interface.new_socket("Tint", in_out="INPUT", socket_type="NodeSocketColor")
+        group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+        inside, outside = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+        group.links.new(inside.outputs[0], node(group, "BsdfDiffuse", outside.inputs[0]).inputs["Color"])
+        used = node(tree, "Group")
+        used.node_tree = group
+        used.inputs[0].default_value = (0.3, 0.2, 0.1, 1.0)
+        tree.links.new(used.outputs[0], output.inputs["Surface"])
+
+    assert shaded(build)[0].diffuse == pytest.approx((0.3, 0.2, 0.1))
+
+
+def test_unknown_shader_is_diffuse_of_its_color_and_named_once():
+    add_camera()
+    made, tree, output = material("fuzzy")
+    node(tree, "BsdfSheen", output.inputs["Surface"], Color=(0.1, 0.2, 0.3, 1.0))
+    for name in "ab":
+        quad(name).data.materials.append(made)
+    synced = sync()
+    assert synced.scene.materials[0].diffuse == pytest.approx((0.1, 0.2, 0.3))
+    assert len(synced.warnings("'fuzzy'", "'Sheen BSDF'", "diffuse")) == 1 == len(synced.messages)
+
+
+def test_unknown_texture_falls_back_to_the_sockets_own_color():
+    def build(tree, output):
+        diffuse = node(tree, "BsdfDiffuse", output.inputs["Surface"], Color=(0.1, 0.2, 0.3, 1.0))
+        node(tree, "TexNoise", diffuse.inputs["Color"], output="Color")
+
+    read, synced = shaded(build)
+    assert read.diffuse == pytest.approx((0.1, 0.2, 0.3))
+    assert len(synced.warnings("'stuff'", "'Noise Texture'", "(0.10, 0.20, 0.30)")) == 1
+
+
+def test_inputs_that_are_not_rendered_are_named_together():
+    def build(tree, output):
+        principled = node(tree, "BsdfPrincipled", output.inputs["Surface"], Subsurface_Weight=0.5, Sheen_Weight=1.0)
+        node(tree, "Bump", principled.inputs["Normal"])
+
+    _, synced = shaded(build)
+    assert len(synced.warnings("Normal, Subsurface Weight, Sheen Weight is not rendered")) == 1 == len(synced.messages)
+
+
+def test_rough_glass_and_displacement_are_reported():
+    def build(tree, output):
+        node(tree, "BsdfGlass", output.inputs["Surface"], Roughness=0.5)
+        node(tree, "Displacement", output.inputs["Displacement"])
+
+    _, synced = shaded(build)
+    assert synced.warnings("rough refraction") and synced.warnings("displacement", "'Displacement'")
+
+
+def test_tree_without_output():
+    read, synced = shaded(lambda tree, output: tree.nodes.remove(output))
+    assert read.diffuse == (0.0, 0.0, 0.0) and synced.warnings("'stuff'", "no output")
+
+
+@pytest.mark.skipif(bpy.app.version >= (5, 0, 0), reason="since Blender 5.0 every material has nodes")
+def test_without_nodes():
+    add_camera()
+    made = bpy.data.materials.new("plain")
+    made.use_nodes = False
+    made.diffuse_color, made.metallic, made.roughness = METAL_BASE, 1.0, 0.0
+    quad().data.materials.append(made)
+    (read,) = sync().scene.materials
+    assert read.reflect == pytest.approx(METAL_BASE[:3]) and not read.fresnel
+
+
+def test_material_override_of_the_view_layer():
+    add_camera()
+    made, tree, output = material("clay")
+    node(tree, "BsdfDiffuse", output.inputs["Surface"], Color=(0.1, 0.2, 0.3, 1.0))
+    bpy.context.view_layer.material_override = made
+    quad().data.materials.append(material("hidden")[0])
+    (read,) = sync().scene.materials
+    assert read.diffuse == pytest.approx((0.1, 0.2, 0.3))
+
+
+def with_image(tree, output, picture, to="Base Color", **inputs):
+    principled = node(tree, "BsdfPrincipled", output.inputs["Surface"], **inputs)
+    textured = node(tree, "TexImage", principled.inputs[to])
+    textured.image = picture
+    return textured
+
+
+def test_image_as_base_color_of_metal_and_body():
+    picture = image(np.full((2, 2, 4), 0.5), float_buffer=True)
+    read, synced = shaded(lambda tree, output: with_image(tree, output, picture, Metallic=0.5, Roughness=0.0))
+    assert read.diffuse_image == read.reflect_image == 0 and len(synced.scene.images) == 1
+    assert read.diffuse == pytest.approx((0.5,) * 3) and read.reflect == pytest.approx((0.52,) * 3, abs=0.05)
+
+
+def test_image_as_emission():
+    picture = image(np.full((2, 2, 4), 0.5), float_buffer=True)
+    read, _ = shaded(lambda tree, output: with_image(tree, output, picture, "Emission Color", Emission_Strength=3.0))
+    assert read.glow_image == 0 and read.glow == pytest.approx((3.0,) * 3) and read.diffuse_image == -1
+
+
+def test_image_times_a_color():
+    def build(tree, output):
+        diffuse = node(tree, "BsdfDiffuse", output.inputs["Surface"])
+        made = node(tree, "MixRGB", diffuse.inputs["Color"])
+        made.blend_type = "MULTIPLY"
+        made.inputs[0].default_value = 1.0
+        made.inputs[2].default_value = (1.0, 0.5, 0.25, 1.0)
+        node(tree, "TexImage", made.inputs[1]).image = image(np.ones((2, 2, 4)))
+
+    read, synced = shaded(build)
+    assert read.diffuse == pytest.approx((1.0, 0.5, 0.25)) and read.diffuse_image == 0 and not synced.messages
