@@ -21,6 +21,7 @@ class ConicRenderEngine(bpy.types.RenderEngine):
         # Blender calls this twice on the same object, and makes short-lived ones just to ask for passes.
         super().__init__(*args, **kwargs)
         self.viewport = None
+        self.reported = set()
 
     def update_render_passes(self, scene, view_layer):
         self.register_pass(scene, view_layer, "Combined", 4, "RGBA", "COLOR")

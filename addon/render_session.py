@@ -30,16 +30,18 @@ def new_device():
 
 
 class Reporter:
-    """Passes messages to Blender's report and its console, each once."""
+    """Passes messages to Blender's report and its console: each once in a render of any frames and layers.
+
+    Previews say nothing: their scenes are not the user's.
+    """
 
     def __init__(self, engine):
         self.engine = engine
-        self.seen = set()
 
     def __call__(self, level, message):
         """Report `message`; `level` is INFO, WARNING or ERROR."""
-        if message not in self.seen:
-            self.seen.add(message)
+        if message not in self.engine.reported and not self.engine.is_preview:
+            self.engine.reported.add(message)
             self.engine.report({level}, message)
 
 
@@ -75,9 +77,8 @@ class LayerRender:
         self.engine = engine
         self.depsgraph = depsgraph
         self.report = Reporter(engine)
-        self.render_settings = depsgraph.scene_eval.render
         self.size = engine.resolution_x, engine.resolution_y
-        self.border = border_of(engine, self.render_settings)
+        self.border = border_of(engine, depsgraph.scene_eval.render)
         self.settings = sync_settings(depsgraph.scene_eval, engine.is_preview)
         self.views = [view.name for view in engine.get_result().views]
         self.shapes = ""
@@ -108,8 +109,8 @@ class LayerRender:
         result = self.engine.begin_result(0, 0, *size, layer=self.depsgraph.view_layer.name, view=view)
         try:
             self.draw(session, index, result)
-        finally:
             self.show(session, result)
+        finally:
             self.engine.end_result(result)
         for warning in session.warnings:
             self.report("WARNING", warning)
@@ -119,21 +120,17 @@ class LayerRender:
         shown = time.monotonic()
         while not self.engine.test_break() and session.step(STEP_SECONDS):
             self.engine.update_progress((index + session.progress) / len(self.views))
-            sample = sample_text(session.progress, self.settings.samples)
-            self.engine.update_stats("Conic", f"{sample} | {self.shapes}")
             if time.monotonic() - shown > RESULT_SECONDS:
+                sample = f"Sample {session.sample + 1}/{self.settings.samples}"
+                self.engine.update_stats("Conic", f"{sample} | {self.shapes}")
                 self.show(session, result)
                 self.engine.update_result(result)
                 shown = time.monotonic()
+        self.engine.update_progress((index + session.progress) / len(self.views))
 
     def show(self, session, result):
         """Copy what is there so far to the render result."""
         result.layers[0].passes["Combined"].rect.foreach_set(session.pixels().reshape(-1))
-
-
-def sample_text(progress, samples):
-    """Which of the `samples` is being drawn at `progress` in [0, 1], as a user reads it."""
-    return f"Sample {min(int(progress * samples) + 1, samples)}/{samples}"
 
 
 def _counted(counts):

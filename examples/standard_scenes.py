@@ -57,9 +57,9 @@ def _turn_up_to(direction):
     x, y, z = direction.T
     down = z < -1.0 + 1e-12
     a = 1.0 / np.where(down, 1.0, 1.0 + z)
-    turn = np.stack(
-        [1.0 - x * x * a, -x * y * a, x, -x * y * a, 1.0 - y * y * a, y, -x, -y, z], axis=-1
-    ).reshape(-1, 3, 3)
+    turn = np.stack([1.0 - x * x * a, -x * y * a, x, -x * y * a, 1.0 - y * y * a, y, -x, -y, z], axis=-1).reshape(
+        -1, 3, 3
+    )
     turn[down] = np.diag([-1.0, 1.0, -1.0])
     return turn
 
@@ -81,9 +81,7 @@ def tree(depth=11):
     wood = scene.add_material(_nff_material((0.55, 0.4, 0.2), 1.0))
     # Each branch carries two: by how much they lean, towards where, and their length in parts of its own.
     forks = [(40.0, 0.0, 0.65), (25.0, 140.0, 0.7)]
-    turns = np.stack(
-        [_rotation_z(around) @ _rotation_y(lean) @ _rotation_z(90.0) for lean, around, _ in forks]
-    )
+    turns = np.stack([_rotation_z(around) @ _rotation_y(lean) @ _rotation_z(90.0) for lean, around, _ in forks])
     lengths = np.array([length for *_, length in forks])
     base, frame, length, radius = np.zeros((1, 3)), np.eye(3)[None], np.ones(1), 0.15
     for _ in range(depth + 1):
@@ -161,9 +159,7 @@ def lattice(n=12):
     """A cube of (n + 1)^3 small mirroring spheres on a grid, with 3 n (n + 1)^2 struts between them."""
     h = 1.0 / n
     lights = [(2, 0.5, 0.5), (-1, 0.5, 0.5), (0.5, 2, 0.5), (0.5, -1, 0.5), (0.5, 0.5, 2), (0.5, 0.5, -1)]
-    scene = _scene(
-        (0.5 + h / 2, 1, 1 - h / 2), (0.5 + h / 2, -1, -1 - h / 2), (0.2, 1, 0), 0.0, lights, angle=60.0
-    )
+    scene = _scene((0.5 + h / 2, 1, 1 - h / 2), (0.5 + h / 2, -1, -1 - h / 2), (0.2, 1, 0), 0.0, lights, angle=60.0)
     grid = np.stack(np.meshgrid(*[np.arange(n + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     joint = scene.add_material(_nff_material((0.9, 0.9, 0.9), 0.5, 0.5, 3.0827))
     scene.add_spheres(grid * h, 0.25 * h, joint)
@@ -186,9 +182,7 @@ def _scene(eye, target, up, hither, lights, angle=45.0):
 def _nff_material(color, kd, ks=0.0, shine=FLAT, transmit=0.0, ior=1.0):
     """The material of NFF's `f` record."""
     diffuse = tuple(kd * np.asarray(color, np.float64))
-    return Material(
-        diffuse=diffuse, reflect=ks, highlight=ks, shine=shine, transmit=transmit, ior=ior, fresnel=False
-    )
+    return Material(diffuse=diffuse, reflect=ks, highlight=ks, shine=shine, transmit=transmit, ior=ior, fresnel=False)
 
 
 def _add_square(scene, half, z, material):
@@ -200,9 +194,7 @@ def _add_square(scene, half, z, material):
 
 
 def main():
-    parser = argparse.ArgumentParser(
-        description="Write a scene of the Standard Procedural Databases' families as NFF."
-    )
+    parser = argparse.ArgumentParser(description="Write a scene of the Standard Procedural Databases' families as NFF.")
     parser.add_argument("family", choices=FAMILIES)
     parser.add_argument(
         "size", type=int, nargs="?", help="how deep it branches, or its side; the databases' if left out"

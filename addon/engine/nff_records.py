@@ -7,7 +7,6 @@ made per record. A line is looked for only when there is something wrong with it
 """
 
 import re
-from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +48,38 @@ class NffError(SceneError):
     """Something is wrong in an NFF file; the message is `file:line: what is wrong, what was expected`."""
 
 
+class _Source:
+    """The text of a file, read once: a pipe can be read no second time to find the line of an error."""
+
+    def __init__(self, path):
+        self._path = path
+        try:
+            data = Path(path).read_bytes()
+        except OSError as error:
+            raise SceneError(f"{path}: cannot be read: {error.strerror or error}") from None
+        if b"\0" in data:
+            raise NffError(f"{path}:1: this is no text but binary data, expected an NFF scene")
+        self.data = data.removeprefix(b"\xef\xbb\xbf")  # the mark that some editors put before UTF-8
+
+    def locate(self, index):
+        """Line number of the word number `index`, and the word as a message shows it."""
+        passed = 0
+        for line, text in enumerate(_COMMENT.sub(b"", self.data).splitlines(), 1):
+            words = text.split()
+            if index < passed + len(words):
+                return line, _quoted(words[index - passed])
+            passed += len(words)
+        raise IndexError(index)
+
+    def error(self, index, message):
+        """An NffError at the line of the word number `index`; `message` may say {word}."""
+        line, word = self.locate(index)
+        return NffError(f"{self._path}:{line}: {message.replace('{word}', word)}")
+
+    def error_at_end(self, message):
+        return NffError(f"{self._path}:{max(len(self.data.splitlines()), 1)}: {message}")
+
+
 class Records:
     """The records of a file in order: `kind` (n,) int, index into FIELDS, and the flat `numbers` (m,)
     float64.
@@ -56,8 +87,8 @@ class Records:
     `start` (n + 1,): where the numbers of each record begin; they end where the next record's begin.
     """
 
-    def __init__(self, path, kind, start, numbers):
-        self.path, self.kind, self.start, self.numbers = path, kind, start, numbers
+    def __init__(self, source, kind, start, numbers):
+        self._source, self.kind, self.start, self.numbers = source, kind, start, numbers
 
     def __len__(self):
         return len(self.kind)
@@ -76,8 +107,9 @@ class Records:
 
     def error(self, row, message):
         """An NffError at the line where record `row` begins; after the last record at the file's end."""
-        line, _ = _locate(self.path, self.start[row] + row) if row < len(self) else (_last_line(self.path), "")
-        return NffError(f"{self.path}:{line}: {message}")
+        if row == len(self):
+            return self._source.error_at_end(message)
+        return self._source.error(self.start[row] + row, message)
 
     def refuse(self, bad, rows, message):
         """Raise an NffError for the first of `rows` where `bad` (k,) bool; `message` may be a function of its
@@ -88,44 +120,34 @@ class Records:
 
     def _number_error(self, index):
         row = int(np.searchsorted(self.start, index, side="right")) - 1
-        line, word = _locate(self.path, index + row + 1)
-        return NffError(f"{self.path}:{line}: the number {word} is not finite, or larger than {LARGEST:g} in size")
+        return self._source.error(
+            index + row + 1, f"the number {{word}} is not finite, or larger than {LARGEST:g} in size"
+        )
 
 
 def read_records(path):
     """The `Records` of an NFF file. Raises NffError where a word, a record's length or a number is wrong."""
-    data = _read(path)
+    source = _Source(path)
     kinds, marks, numbers, words = [], [], [], 0
-    for text in _chunks(data):
+    for text in _chunks(source.data):
         tokens = text.split()
         chunk_marks = [i for i, token in enumerate(tokens) if token in _KIND_OF_BYTES]
         kinds.append(np.fromiter((_KIND_OF_BYTES[tokens[i]] for i in chunk_marks), np.int8, len(chunk_marks)))
         marks.append(np.array(chunk_marks, np.int64) + words)
         for i in chunk_marks:
             tokens[i] = b"0"
-        numbers.append(np.delete(_to_floats(path, tokens, words, b"_" in text), chunk_marks))
+        numbers.append(np.delete(_to_floats(source, tokens, words, b"_" in text), chunk_marks))
         words += len(tokens)
     if not words:
-        raise NffError(f"{path}:1: the file is empty, expected an NFF scene (records {' '.join(RECORDS)})")
+        raise source.error_at_end(f"the file is empty, expected an NFF scene (records {' '.join(RECORDS)})")
     mark = np.concatenate(marks)
     if not len(mark) or mark[0] != 0:
-        line, word = _locate(path, 0)
-        raise NffError(f"{path}:{line}: the file begins with {word}, expected a record: {' '.join(RECORDS)}")
+        raise source.error(0, f"the file begins with {{word}}, expected a record: {' '.join(RECORDS)}")
     start = np.append(mark, words) - np.arange(len(mark) + 1)
-    records = Records(path, np.concatenate(kinds), start, np.concatenate(numbers))
+    records = Records(source, np.concatenate(kinds), start, np.concatenate(numbers))
     _check_numbers(records)
     _check_counts(records)
     return records
-
-
-def _read(path):
-    try:
-        data = Path(path).read_bytes()
-    except OSError as error:
-        raise SceneError(f"{path}: cannot be read: {error.strerror or error}") from None
-    if b"\0" in data:
-        raise NffError(f"{path}:1: this is no text but binary data, expected an NFF scene")
-    return data.removeprefix(b"\xef\xbb\xbf")  # the mark that some editors put before UTF-8
 
 
 def _chunks(data):
@@ -137,7 +159,7 @@ def _chunks(data):
         begin = end
 
 
-def _to_floats(path, tokens, words, suspicious):
+def _to_floats(source, tokens, words, suspicious):
     """The tokens' values (n,); `words` stand before them. Python reads 1_0 as 10: where `suspicious`, that is
     looked for."""
     try:
@@ -148,10 +170,9 @@ def _to_floats(path, tokens, words, suspicious):
         bad = next((i for i, token in enumerate(tokens) if not _is_number(token)), None)
         if bad is None:
             raise
-    line, word = _locate(path, words + bad)
     if re.match(rb"[-+.\d]", tokens[bad]):
-        raise NffError(f"{path}:{line}: {word} is not a number")
-    raise NffError(f"{path}:{line}: unknown record {word}, expected one of {' '.join(RECORDS)} or a number")
+        raise source.error(words + bad, "{word} is not a number")
+    raise source.error(words + bad, f"unknown record {{word}}, expected one of {' '.join(RECORDS)} or a number")
 
 
 def _is_number(token):
@@ -198,6 +219,8 @@ def _count_message(records, row, found, wanted):
     fields = FIELDS[keyword]
     if keyword in _POLYGON:
         what = f"{wanted[row]} (the number of vertices, then {fields} of each)"
+    elif keyword == "l":
+        what = f"3 or 6 ({fields})"
     else:
         what = f"{wanted[row]}{f' ({fields})' if fields else ''}"
     if found[row] < wanted[row] and row == len(records) - 1:
@@ -205,22 +228,7 @@ def _count_message(records, row, found, wanted):
     return f"{keyword!r} has {found[row]} numbers, expected {what}"
 
 
-def _locate(path, index):
-    """Line number and text of the word number `index` of the file; reads the file again, for errors only."""
-    passed = 0
-    for line, text in enumerate(_COMMENT.sub(b"", _read(path)).splitlines(), 1):
-        words = text.split()
-        if index < passed + len(words):
-            return line, _quoted(next(islice(words, int(index) - passed, None)))
-        passed += len(words)
-    return _last_line(path), "the end of the file"
-
-
 def _quoted(word):
     """A word as a message can show it: printable and not too long."""
     text = word.decode("utf-8", "replace")
     return repr(text if len(text) <= 40 else text[:37] + "...")
-
-
-def _last_line(path):
-    return max(len(_read(path).splitlines()), 1)

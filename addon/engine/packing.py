@@ -17,8 +17,9 @@ from .scene import EXTENSIONS, INTERPOLATIONS, Geometry, LightKind, Material
 
 _INSTANCE = layout.KINDS.index("instance")
 
-#: How much larger boxes are stored than they are, relative to their coordinates: covers the rounding of the slab test.
-_BOX_PADDING = 2.0**-22
+#: How much larger boxes are stored than they are, relative to the largest of their coordinates: what the intersection with
+#: a primitive rounds by. The shader adds the same for the ray's origin.
+_BOX_PADDING = 2.0**-21
 _BOX_PADDING_ABSOLUTE = 1e-20
 
 
@@ -380,9 +381,9 @@ def _node_records(tree, node_start, primitive_starts, kinds):
     low, high = layout.split_index(first)
     leaf = layout.pack_leaf(np.where(tree.is_leaf, numbers[label], 0), tree.count, high)
     boxes = tree.boxes.astype(np.float64)
-    padding = np.abs(boxes) * _BOX_PADDING + _BOX_PADDING_ABSOLUTE
-    lower = np.maximum(boxes[:, :, 0] - padding[:, :, 0], -bvh_far())
-    upper = np.minimum(boxes[:, :, 1] + padding[:, :, 1], bvh_far())
+    padding = np.abs(boxes).max(axis=(2, 3))[:, :, None] * _BOX_PADDING + _BOX_PADDING_ABSOLUTE
+    lower = np.maximum(boxes[:, :, 0] - padding, -bvh_far())
+    upper = np.minimum(boxes[:, :, 1] + padding, bvh_far())
     empty = ~tree.is_leaf & ~tree.is_inner
     lower[empty] = upper[empty] = bvh_far()
     records = layout.NODE.zeros(len(tree))

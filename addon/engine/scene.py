@@ -131,7 +131,7 @@ EXTENSIONS = ("REPEAT", "EXTEND", "CLIP")
 class World:
     """What a ray that hits nothing sees: `color`, times an equirectangular image where there is one.
 
-    The image is seen as Blender maps it: its centre is towards -Y rotated as in u = 1/2 - atan2(y, x) / 2 pi.
+    The image is seen as Blender maps it: its centre towards +X, u = 1/2 - atan2(y, x) / 2 pi.
     """
 
     color: tuple = (0.05, 0.05, 0.05)

@@ -86,8 +86,7 @@ def sphere(radius):
     vertices = np.concatenate([*rings, [(0.0, 0.0, -radius), (0.0, 0.0, radius)]])
     starts = [Tip(len(vertices) - 2), *range(0, SEGMENTS * (RINGS - 1), SEGMENTS), Tip(len(vertices) - 1)]
     bands = [
-        _band(vertices, lower, upper, k / RINGS, (k + 1) / RINGS)
-        for k, (lower, upper) in enumerate(pairwise(starts))
+        _band(vertices, lower, upper, k / RINGS, (k + 1) / RINGS) for k, (lower, upper) in enumerate(pairwise(starts))
     ]
     return ProxyMesh.join(*bands)
 

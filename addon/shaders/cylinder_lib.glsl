@@ -7,33 +7,8 @@
 /* Nearest t in (0, t_max), else t_max. A negative radius is hit from within only. */
 float cylinder_hit(Cylinder cylinder, Ray ray, float t_max)
 {
-  float height = length(cylinder.axis);
-  vec3 axis = cylinder.axis / height;
-  vec3 offset = ray.origin - cylinder.base;
-  float z = dot(offset, axis);
-  float dz = dot(ray.direction, axis);
-  vec3 position = offset - z * axis;
-  vec3 direction = ray.direction - dz * axis;
-  float a = dot(direction, direction);
-  if (a < 1e-12) { /* along the axis: it misses the side */
-    return t_max;
-  }
-  float b = dot(position, direction);
-  vec3 closest = position - (b / a) * direction;
-  float squared = cylinder.radius * cylinder.radius - dot(closest, closest);
-  if (squared < 0.0) {
-    return t_max;
-  }
-  float c = dot(position, position) - cylinder.radius * cylinder.radius;
-  vec2 roots = quadric_roots(a, b, c, a * squared);
-  vec2 heights = vec2(z) + roots * dz;
-  if (roots.x > 0.0 && heights.x >= 0.0 && heights.x <= height && cylinder.radius > 0.0) {
-    return min(roots.x, t_max);
-  }
-  if (roots.y > 0.0 && heights.y >= 0.0 && heights.y <= height) {
-    return min(roots.y, t_max);
-  }
-  return t_max;
+  float radius = abs(cylinder.radius);
+  return quadric_hit(cylinder.base, cylinder.axis, radius, radius, cylinder.radius > 0.0, ray, t_max);
 }
 
 Surface cylinder_surface(Cylinder cylinder, CylinderSurface info, Ray ray, float t)

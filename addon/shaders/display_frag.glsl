@@ -1,5 +1,6 @@
-// The picture so far, a texel for each square of `pixel_size` pixels: scene-linear, premultiplied, as it is.
+// The picture so far, scene-linear and premultiplied, as it is.
 void main()
 {
-  out_color = texelFetch(picture, ivec2(gl_FragCoord.xy) / pixel_size, 0);
+  ivec2 size = textureSize(picture, 0);
+  out_color = texelFetch(picture, clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1), 0);
 }

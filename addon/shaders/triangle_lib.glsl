@@ -3,39 +3,63 @@
 #include <triangle>
 #include <triangle_surface>
 
-/* Volumes spanned by the ray and each edge, opposite to p0, p1, p2: of one sign inside. Two triangles that share an edge get
- * exactly opposite values for it, since both see the same sum and opposite differences of its ends (the robust test of
- * Embree; Davidovic et al. 2012, 3D rasterization). */
-vec3 triangle_edges(Triangle triangle, Ray ray)
+/* A vertex as the ray sees it: two coordinates across the ray and the third along it. What a vertex becomes depends on
+ * nothing but the ray, so triangles that share it agree on it. (The idea is Woop et al. 2013, Watertight Ray/Triangle
+ * Intersection; the basis is that of Duff et al. 2017, Building an Orthonormal Basis, Revisited.) */
+vec3 triangle_seen(vec3 vertex, Ray ray)
 {
-  vec3 a = triangle.p0 - ray.origin;
-  vec3 b = triangle.p1 - ray.origin;
-  vec3 c = triangle.p2 - ray.origin;
-  return vec3(dot(cross(c - b, c + b), ray.direction), dot(cross(a - c, a + c), ray.direction),
-              dot(cross(b - a, b + a), ray.direction));
+  vec3 offset = vertex - ray.origin;
+  vec3 d = ray.direction;
+  float side = d.z < 0.0 ? -1.0 : 1.0;
+  float a = -1.0 / (side + d.z);
+  float b = d.x * d.y * a;
+  return vec3(dot(offset, vec3(1.0 + side * d.x * d.x * a, side * b, -side * d.x)),
+              dot(offset, vec3(b, side + d.y * d.y * a, -d.y)), dot(offset, d));
 }
 
-/* Nearest t in (0, t_max), else t_max: the weighted mean of the vertices' t. Unlike the distance from the plane, which a
- * sliver's normal hardly tells, it never leaves the triangle. The edges' sum is -2 times direction . normal. */
+/* Twice the signed area between the ray and an edge from a to b. Taken in one order of the two ends, so that the triangle
+ * on the other side of the edge gets exactly the opposite, with fused multiplications too. */
+float triangle_edge(vec3 a, vec3 b)
+{
+  bool ordered = a.x < b.x || (a.x == b.x && a.y < b.y);
+  vec2 first = ordered ? a.xy : b.xy;
+  vec2 last = ordered ? b.xy : a.xy;
+  float area = first.x * last.y - first.y * last.x;
+  return ordered ? area : -area;
+}
+
+/* Areas opposite to p0, p1, p2, of one sign where the ray meets the triangle; their sum's sign is that of
+ * direction . normal. `along`: the vertices' distances along the ray. */
+vec3 triangle_areas(Triangle triangle, Ray ray, out vec3 along)
+{
+  vec3 a = triangle_seen(triangle.p0, ray);
+  vec3 b = triangle_seen(triangle.p1, ray);
+  vec3 c = triangle_seen(triangle.p2, ray);
+  along = vec3(a.z, b.z, c.z);
+  return vec3(triangle_edge(b, c), triangle_edge(c, a), triangle_edge(a, b));
+}
+
+/* Nearest t in (0, t_max), else t_max: the weighted mean of the vertices' distances. Unlike the distance from the plane,
+ * which a sliver's normal hardly tells, it never leaves the triangle. */
 float triangle_hit(Triangle triangle, Ray ray, float t_max)
 {
-  vec3 edges = triangle_edges(triangle, ray);
-  float lowest = min(edges.x, min(edges.y, edges.z));
-  float highest = max(edges.x, max(edges.y, edges.z));
-  float sum = edges.x + edges.y + edges.z;
-  if ((lowest < 0.0 && highest > 0.0) || sum == 0.0 || (triangle.one_sided > 0.5 && sum < 0.0)) {
+  vec3 along;
+  vec3 areas = triangle_areas(triangle, ray, along);
+  float lowest = min(areas.x, min(areas.y, areas.z));
+  float highest = max(areas.x, max(areas.y, areas.z));
+  float sum = areas.x + areas.y + areas.z;
+  if ((lowest < 0.0 && highest > 0.0) || sum == 0.0 || (triangle.one_sided > 0.5 && sum > 0.0)) {
     return t_max;
   }
-  vec3 along = vec3(dot(triangle.p0 - ray.origin, ray.direction), dot(triangle.p1 - ray.origin, ray.direction),
-                    dot(triangle.p2 - ray.origin, ray.direction));
-  float t = dot(edges / sum, along);
+  float t = dot(areas / sum, along);
   return (t > 0.0 && t < t_max) ? t : t_max;
 }
 
 Surface triangle_surface(Triangle triangle, TriangleSurface info, Ray ray, float t)
 {
-  vec3 edges = triangle_edges(triangle, ray);
-  vec3 weights = edges / (edges.x + edges.y + edges.z);
+  vec3 along;
+  vec3 areas = triangle_areas(triangle, ray, along);
+  vec3 weights = areas / (areas.x + areas.y + areas.z);
   vec3 position = weights.x * triangle.p0 + weights.y * triangle.p1 + weights.z * triangle.p2;
   vec3 normal = normalize(cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0));
   vec3 smooth_normal = weights.x * info.n0 + weights.y * info.n1 + weights.z * info.n2;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's cameras and views as the engine's."""
 
 import numpy as np
@@ -9,18 +10,22 @@ from ..engine.scene import Camera
 def camera_of_render(engine, depsgraph, width, height, *, camera=None, reports=None):
     """The camera of a render of width x height pixels, the full frame without its border.
 
-    `engine` (a RenderEngine) gives the eye of a stereo pair and its override; without one, the scene's camera is used, or
-    the object `camera`. Raises SceneError when there is none.
+    `engine` (a RenderEngine) gives the eye of a stereo pair and its override; without one, the scene's camera is
+    used, or the object `camera`. Raises SceneError when there is none.
     """
     scene = depsgraph.scene_eval
     camera = camera or (engine and engine.camera_override) or scene.camera
     if camera is None or camera.type != "CAMERA":
-        raise SceneError(f"scene {scene.name!r} has no camera; add one with Add > Camera, or choose one in the scene's settings")
+        raise SceneError(
+            f"scene {scene.name!r} has no camera; add one with Add > Camera, or choose one in the scene's settings"
+        )
     camera = camera.evaluated_get(depsgraph)
     data = camera.data
     if data.type not in ("PERSP", "ORTHO") and reports is not None:
         kind = "panoramic" if data.type == "PANO" else data.type.lower()
         reports.warn(f"camera {camera.name!r}: {kind} is not rendered, perspective is used instead")
+    if data.dof.use_dof and reports is not None:
+        reports.warn(f"camera {camera.name!r}: depth of field is not rendered")
     render = scene.render
     projection = camera.calc_matrix_camera(
         depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The shader nodes that are understood, each as `Lobes`."""
 
 from .lobes import Lobes, dielectric_coat, ior_of_reflectance, metal, normal_reflectance, sharpness
@@ -78,8 +79,8 @@ def _principled(source, reader):
 def principled(base, *, metallic=0.0, roughness=0.5, transmission=0.0, ior=1.5, specular=0.5, tint=None):
     """Blender's Principled BSDF: metal, glass and a dielectric over a diffuse body, by weight.
 
-    As in Cycles, glass takes the root of the base colour at each of its surfaces, and the specular level changes the index
-    of refraction of the opaque body only.
+    As in Cycles, glass takes the root of the base colour at each of its surfaces, and the specular level changes the
+    index of refraction of the opaque body only.
     """
     m, w = (min(max(x, 0.0), 1.0) for x in (metallic, transmission))
     ior = max(ior, 1e-3)
@@ -100,6 +101,8 @@ def _report_rough(source, reader, transmission, roughness):
 
 
 def _diffuse(source, reader):
+    if reader.number(source.input("Roughness")) > 0.0:
+        reader.warn(f"node {source.node.name!r}: the roughness of a diffuse surface is not rendered")
     return Lobes(diffuse=reader.color(source.input("Color")))
 
 

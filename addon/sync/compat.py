@@ -1,14 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What differs between Blender 4.2 and 5.2, in one place; guards ask for the feature where that is possible."""
 
 import bpy
 
-#: From here on materials, worlds and lights always have a node tree; asking for `use_nodes` gives a deprecation warning.
+#: From these on materials, worlds and lights always use their nodes; asking for `use_nodes` gives a deprecation
+#: warning.
 _ALWAYS_NODES = (5, 0, 0)
+_LIGHTS_ALWAYS_NODES = (5, 2, 0)
 
 
 def node_tree(owner):
     """The node tree in use of a material, world or light; None where it is shaded without nodes."""
-    if bpy.app.version < _ALWAYS_NODES and not owner.use_nodes:
+    always = _LIGHTS_ALWAYS_NODES if isinstance(owner, bpy.types.Light) else _ALWAYS_NODES
+    if bpy.app.version < always and not owner.use_nodes:
         return None
     return owner.node_tree
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Images of Blender as engine images: scene-linear, premultiplied alpha, bottom row first."""
 
 import numpy as np
@@ -24,14 +25,15 @@ class Images:
     def value(self, node, user, *, keep_straight=False):
         """The image of an image or environment texture node as a `Value`; pink where it is missing.
 
-        `user` names for the report what it is used in. `keep_straight`: the node's alpha is used too, so that its colour is
-        not multiplied by it.
+        `user` names for the report what it is used in. `keep_straight`: the node's alpha is used too, so that its
+        colour is not multiplied by it.
         """
         image = node.image
         if image is None:
             self._reports.warn(f"{user}: node {node.name!r} has no image; pink is used instead")
             return Value(MISSING)
-        key = (original_key(image), node.interpolation, node.extension if hasattr(node, "extension") else "", keep_straight)
+        extension = getattr(node, "extension", "")  # a panorama has none
+        key = original_key(image), node.interpolation, extension, keep_straight
         if key not in self._indices:
             pixels = self._read(image, user, keep_straight)
             self._indices[key] = None if pixels is None else self._add(pixels, node, image, user)
@@ -40,7 +42,9 @@ class Images:
     def _add(self, pixels, node, image, user):
         extension = getattr(node, "extension", "REPEAT")
         if extension not in _EXTENSION:
-            self._reports.warn(f"{user}: image {image.name!r} is repeated, extension {extension.title()} is not rendered")
+            self._reports.warn(
+                f"{user}: image {image.name!r} is repeated, extension {extension.title()} is not rendered"
+            )
         index = self._scene.add_image(
             Image(
                 pixels,
@@ -49,7 +53,7 @@ class Images:
                 name=image.name,
             )
         )
-        mean = pixels[..., :3].mean(axis=(0, 1), dtype=np.float64)
+        mean = pixels.mean(axis=1)[:, :3].mean(axis=0, dtype=np.float64)
         return Value((1.0, 1.0, 1.0), index, tuple(np.nan_to_num(mean)))
 
     def _read(self, image, user, keep_straight):
@@ -69,18 +73,20 @@ class Images:
         if image.source in ("TILED", "SEQUENCE", "MOVIE"):
             only = "its first tile" if image.source == "TILED" else "one frame of it"
             self._reports.warn(f"{user}: of image {image.name!r} only {only} is rendered")
-        flat = np.empty(count, np.float32)
-        image.pixels.foreach_get(flat)
-        pixels = _rgba(flat.reshape(height, width, -1))
+        pixels = np.empty(count, np.float32)
+        image.pixels.foreach_get(pixels)
+        pixels = _rgba(pixels.reshape(height, width, -1))
+        if image.is_float:
+            return np.nan_to_num(pixels, copy=False, posinf=np.finfo(np.float32).max, neginf=0.0)
         space = image.colorspace_settings.name
-        if not image.is_float:
-            if space not in (*_LINEAR, "sRGB"):
-                self._reports.warn(f"{user}: image {image.name!r} is read as sRGB, not as {space}")
-            if space not in _LINEAR:
-                _decode_srgb(pixels)
-            if not keep_straight and space != "Non-Color" and image.alpha_mode not in _NO_ALPHA:
-                pixels[..., :3] *= pixels[..., 3:]
-        return np.nan_to_num(pixels, copy=False, posinf=np.finfo(np.float32).max, neginf=0.0)
+        if space not in (*_LINEAR, "sRGB"):
+            self._reports.warn(f"{user}: image {image.name!r} is read as sRGB, not as {space}")
+        if space not in _LINEAR:
+            _decode_srgb(pixels)
+        straight = keep_straight or space == "Non-Color" or image.alpha_mode in _NO_ALPHA
+        if not straight and pixels[..., 3].min() < 1.0:
+            pixels[..., :3] *= pixels[..., 3:]
+        return pixels
 
 
 def _rgba(pixels):
@@ -96,7 +102,10 @@ def _rgba(pixels):
 
 
 def _decode_srgb(pixels):
-    """Decode the colours (h, w, 4) of a byte image in place (IEC 61966-2-1); 256 values need no power each."""
+    """Decode the colours (h, w, 4) of a byte image in place (IEC 61966-2-1); its 256 values need no power each."""
     encoded = np.arange(256) / 255.0
     linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4).astype(np.float32)
-    pixels[..., :3] = linear[(pixels[..., :3] * 255.0 + 0.5).astype(np.uint8)]
+    alpha = pixels[..., 3].copy()
+    np.multiply(pixels, 255.0, out=pixels)
+    np.take(linear, np.rint(pixels, out=pixels).astype(np.uint8), out=pixels, mode="clip")
+    pixels[..., 3] = alpha

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Keys by which things are known within one sync and from one to the next. A Blender pointer is never one of them."""
 
 

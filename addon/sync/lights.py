@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's lights as the engine's, which have no extent."""
 
 import numpy as np
@@ -8,7 +9,7 @@ from .compat import light_factor, node_tree
 from .nodes import output_source
 from .textures import NodeReader
 
-#: A small area light shines straight ahead as a point light of four times its power: P / pi against P / 4 pi per steradian.
+#: Straight ahead, a small area light shines like a point light of four times its power: P / pi against P / 4 pi.
 _AREA_AHEAD = 4.0
 
 

@@ -1,8 +1,9 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The parts of a shader, added and mixed as node trees do, and how they become one material of the engine.
 
 The engine's material has one set of shares: either the mirror and refracted rays follow Fresnel, or their shares are
-constants. A shader of several parts is drawn by whichever kind sends more light straight on or back at normal incidence;
-parts of the other kind join with the share that they have at normal incidence.
+constants. A shader of several parts is drawn by whichever kind sends more light straight on or back at normal
+incidence; parts of the other kind join with the share that they have at normal incidence.
 """
 
 from dataclasses import dataclass, field, fields, replace
@@ -21,7 +22,8 @@ class Lobes:
     """What a shader does with light; each share a `Value`.
 
     `mirror` and `clear` are constant shares that are reflected and go through, `coat` and `glass` the ones of a smooth
-    dielectric of index `ior`, times Fresnel F and 1 - F. `clear_ior` bends what goes through as `clear`: 1 for Transparent.
+    dielectric of index `ior`, times Fresnel F and 1 - F. `clear_ior` bends what goes through as `clear`: 1 for
+    Transparent.
     """
 
     diffuse: Value = field(default_factory=Value)
@@ -37,7 +39,9 @@ class Lobes:
 
     def plus(self, other):
         """The sum; indices and exponent are those of the stronger part."""
-        shares = {f.name: getattr(self, f.name).plus(getattr(other, f.name)) for f in fields(self) if f.name not in _NUMBERS}
+        shares = {
+            f.name: getattr(self, f.name).plus(getattr(other, f.name)) for f in fields(self) if f.name not in _NUMBERS
+        }
         return Lobes(
             **shares,
             shine=_of_stronger(self, other, "shine", "highlight"),
@@ -57,8 +61,15 @@ class Lobes:
     def mixed_by_fresnel(self, other, ior):
         """What Mix Shader does with a Fresnel node of index `ior` in its factor: this one under the other as a coat."""
         under = replace(self, glass=self.glass.plus(self.clear), clear=Value(), coat=Value(), ior=ior)
-        over = replace(other.times(normal_reflectance(ior)), mirror=Value(), coat=other.mirror.plus(other.coat), ior=ior)
+        over = replace(
+            other.times(normal_reflectance(ior)), mirror=Value(), coat=other.mirror.plus(other.coat), ior=ior
+        )
         return under.plus(over)
+
+    @property
+    def blurred(self):
+        """Whether some share holds less of its images than the node tree has."""
+        return any(getattr(self, f.name).blurred for f in fields(self) if f.name not in _NUMBERS)
 
     def material(self, absorption=(0.0, 0.0, 0.0)):
         """The engine's material that comes nearest."""
@@ -128,9 +139,9 @@ def sharpness(roughness):
 def phong_of(roughness):
     """(weight, exponent) of the lights' highlight that looks like a microfacet lobe of this roughness.
 
-    Blinn's exponent is n = 2 / alpha^2 - 2 with alpha = roughness^2 (Walter et al. 2007). The angle to the mirror direction is
-    twice the one to the half vector, which makes Phong's exponent n / 4. The peak of pi D / 4, D = (n + 2) / 2 pi there, is
-    (n + 2) / 8 in units of a white diffuse surface.
+    Blinn's exponent is n = 2 / alpha^2 - 2 with alpha = roughness^2 (Walter et al. 2007). The angle to the mirror
+    direction is twice the one to the half vector, which makes Phong's exponent n / 4. The peak of pi D / 4, where
+    D = (n + 2) / 2 pi, is (n + 2) / 8 in units of a white diffuse surface.
     """
     alpha = max(float(roughness), 0.05) ** 2
     blinn = max(2.0 / alpha**2 - 2.0, 0.0)
@@ -138,8 +149,8 @@ def phong_of(roughness):
 
 
 def metal(color, roughness):
-    """A conductor that reflects `color` (a Value). What is too rough for a mirror is highlight and, the rougher the more,
-    diffuse, so that a rough metal among point lights is not black."""
+    """A conductor that reflects `color` (a Value). What is too rough for a mirror is highlight and, the rougher the
+    more, diffuse, so that a rough metal among point lights is not black."""
     sharp = sharpness(roughness)
     peak, exponent = phong_of(roughness)
     blunt = 1.0 - sharp

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Evaluated meshes as arrays, and arrays as triangles. No loop over elements: attributes are read whole."""
 
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from .recognise import MeshArrays
 
 
 def read_mesh(mesh, uv_map=None):
-    """The `MeshArrays` of an evaluated Blender mesh; `uv_map` names its uv map, empty for the active one, None for none."""
+    """The `MeshArrays` of an evaluated Blender mesh; with the uv map called `uv_map`, empty for the active one."""
     faces = len(mesh.polygons)
     offsets = np.empty(faces + 1, np.int32)
     mesh.polygons.foreach_get("loop_start", offsets[:faces])
@@ -27,8 +28,9 @@ def read_mesh(mesh, uv_map=None):
 
 
 def read_uv(mesh, name=""):
-    """The uv map called `name`, empty for the one active for rendering: (corners, 2) float32, or None where there is none.
-    Values that are not finite become 0."""
+    """The uv map called `name`, empty for the one active for rendering: (corners, 2) float32, or None where there is
+    none. Values that are not finite become 0.
+    """
     if not name:
         name = next((layer.name for layer in mesh.uv_layers if layer.active_render), "")
     uv = _attribute(mesh, name, "CORNER", "vector", np.float32, 2) if name else None
@@ -76,8 +78,8 @@ class MeshTriangles:
 def read_triangles(mesh, slot_count, uv_sources=()):
     """The `MeshTriangles` of an evaluated Blender mesh.
 
-    Their material is the slot, as Blender clamps it to `slot_count`. `uv_sources`: a `UvSource` or None for each slot; empty
-    for no uv at all.
+    Their material is the slot, as Blender clamps it to `slot_count`. `uv_sources`: a `UvSource` or None for each
+    slot; empty for no uv at all.
     """
     corners, faces = _triangulation(mesh)
     if not len(corners):

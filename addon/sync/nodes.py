@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Following the links of a node tree: through reroutes, muted nodes and node groups, to what feeds a socket."""
 
 from dataclasses import dataclass
@@ -10,7 +11,8 @@ _TARGETS = ("ALL", "CYCLES", "EEVEE")
 class Source:
     """What feeds a socket: `output` of `node`; or nothing, then `node` is None and `socket.default_value` counts.
 
-    `groups` are the group nodes that one has entered on the way, outermost first: sockets of `node` are followed with them.
+    `groups` are the group nodes that one has entered on the way, outermost first: sockets of `node` are followed with
+    them.
     """
 
     socket: object

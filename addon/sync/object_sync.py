@@ -1,4 +1,5 @@
-"""The objects of a depsgraph in two phases: collect every copy by what it is a copy of, then place all copies at once."""
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The objects of a depsgraph in two phases: collect all copies by what they are copies of, then place them."""
 
 from dataclasses import dataclass, field
 
@@ -15,6 +16,7 @@ _SILENT = {
     *("CURVE", "FONT", "META", "SURFACE"),
     *("EMPTY", "CAMERA", "ARMATURE", "LATTICE", "LIGHT_PROBE", "SPEAKER"),
 }
+_VISIBLE_TO = tuple(f"visible_{ray}" for ray in ("camera", "diffuse", "glossy", "transmission", "shadow"))
 
 
 @dataclass
@@ -39,7 +41,7 @@ class ObjectSync:
         self._geometries = {}
 
     def collect(self, depsgraph):
-        """Go once through all objects and instances. What each needs is copied: none of them lives longer than its step."""
+        """Go once through all objects and instances; none of them lives longer than its step, so values are copied."""
         for instance in depsgraph.object_instances:
             if not instance.show_self:
                 continue
@@ -84,6 +86,7 @@ class ObjectSync:
 
     def _read(self, obj, kind):
         shadings = self._shadings_of(obj)
+        self._report_flags(obj)
         if kind == "MESH":
             content = self._mesh_content(obj, shadings)
         elif kind == "POINTCLOUD":
@@ -95,6 +98,14 @@ class ObjectSync:
             return None
         materials = tuple(shading.index for shading in shadings)
         return self._assets.setdefault((id(content), materials), _Asset(content, materials))
+
+    def _report_flags(self, obj):
+        """Name the settings of visibility that are not rendered."""
+        if not all(getattr(obj, name) for name in _VISIBLE_TO):
+            self._reports.warn(f"object {obj.name!r}: its ray visibility is not rendered, all rays see it")
+        for name in ("is_holdout", "is_shadow_catcher"):
+            if getattr(obj, name):
+                self._reports.warn(f"object {obj.name!r}: it is not rendered as a {name[3:].replace('_', ' ')}")
 
     def _shadings_of(self, obj):
         """The `Shading` of each of the object's slots, at least one."""
@@ -109,7 +120,13 @@ class ObjectSync:
         taken = taken_as(obj.conic.primitive, mesh, shadings, self._recognise, self._recognitions)
         if taken.problem:
             self._reports.warn(f"object {obj.name!r}: rendered as a {taken.reason}")
-        return taken.shape or self._triangles(obj, mesh, shadings)
+        if taken.shape is None:
+            return self._triangles(obj, mesh, shadings)
+        for shading in shadings:
+            if shading.uv is not None and not shading.uv.plain:
+                what = f"the Mapping node of material {shading.name!r}"
+                self._reports.warn(f"object {obj.name!r}: {what} is not rendered on an exact shape")
+        return taken.shape
 
     def _triangles(self, obj, mesh, shadings):
         """The Geometry of a mesh, shared by all objects that have the mesh and its uv needs in common."""

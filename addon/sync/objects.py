@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What each object is taken as, and why: an exact shape or its mesh."""
 
 from dataclasses import dataclass
@@ -25,7 +26,7 @@ class Taken:
     problem: bool = False
 
 
-#: Recognitions by a digest of all that they depend on: copies of a mesh and later syncs have them for a tenth of the time.
+#: Recognitions by a digest of all that they depend on: copies of a mesh and later syncs have them at once.
 _BY_CONTENT = {}
 _REMEMBER_AT_MOST = 1 << 14
 _REMEMBER_FACES = 1 << 17  # of larger meshes a digest takes longer than a look at their counts
@@ -110,7 +111,9 @@ def _chosen(primitive, mesh, recognitions):
     if recognition.kind != primitive:
         recognition = recognitions.fitted(mesh, primitive)
     if recognition is None:
-        return Taken("MESH", f"mesh: a {primitive.lower()} is chosen, but its bounding box is flat or empty", problem=True)
+        return Taken(
+            "MESH", f"mesh: a {primitive.lower()} is chosen, but its bounding box is flat or empty", problem=True
+        )
     return Taken(recognition.kind, recognition.reason, recognitions.shape(recognition))
 
 
@@ -133,15 +136,21 @@ def _uv_conflict(recognition: Recognition, shadings):
     return ""
 
 
+_NOUNS = {"CURVE": "curve", "FONT": "text", "META": "metaball", "SURFACE": "surface"}
+
+
 def describe(obj, depsgraph):
-    """What a render takes an object as, for its panel: (kind, reason). `kind` is MESH, SPHERE, CYLINDER, CONE, DISC, PLANE,
-    or NONE for what is no surface.
+    """What a render takes an object as, for its panel: (kind, reason). `kind` is MESH, SPHERE, CYLINDER, CONE, DISC,
+    PLANE, or NONE for what is no surface.
 
     A panel may ask each time that it is drawn: recognition is repeated only when the mesh has changed.
     """
     evaluated = obj.evaluated_get(depsgraph)
-    if evaluated.type in ("CURVE", "FONT", "META", "SURFACE"):
+    primitive = evaluated.conic.primitive
+    if evaluated.type in _NOUNS and primitive in ("AUTO", "MESH"):
         return "MESH", f"mesh: made from a {_NOUNS[evaluated.type]}"
+    if evaluated.type in _NOUNS:
+        return primitive, f"{primitive.lower()}: chosen in the object's settings"
     if evaluated.type != "MESH":
         return "NONE", "it is no surface"
     mesh = evaluated.data
@@ -149,8 +158,5 @@ def describe(obj, depsgraph):
         return "MESH", "mesh: it has no faces"
     shadings = Shadings(Scene(), None, Reports(lambda level, message: None))
     slots = tuple(shadings.of(slot.material) for slot in evaluated.material_slots) or (shadings.of(None),)
-    taken = taken_as(evaluated.conic.primitive, mesh, slots, depsgraph.scene.conic.recognise, Recognitions())
+    taken = taken_as(primitive, mesh, slots, depsgraph.scene.conic.recognise, Recognitions())
     return taken.kind, taken.reason
-
-
-_NOUNS = {"CURVE": "curve", "FONT": "text", "META": "metaball", "SURFACE": "surface"}

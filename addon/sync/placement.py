@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Many copies of shapes in the world, without a loop over the copies."""
 
 import numpy as np
@@ -5,7 +6,7 @@ import numpy as np
 from ..engine.primitives import Similarity
 from ..engine.scene import Geometry, Instance, Planes
 
-#: A matrix whose smallest stretch is below this part of its largest cannot be inverted in float32.
+#: Inverse of the condition number up to which a matrix of float32 values can be inverted.
 _SINGULAR = 1e-7
 
 
@@ -36,9 +37,11 @@ class Similarities:
 def invertible(matrices):
     """Which of matrices (n, 4, 4) can be inverted: (n,) bool; those that are not finite cannot."""
     finite = np.isfinite(matrices).all(axis=(1, 2))
-    linear = np.where(finite[:, None, None], matrices, 0.0)[:, :3, :3]
-    stretch = np.linalg.svd(linear, compute_uv=False)
-    return (stretch[:, 0] > 0.0) & (stretch[:, 2] > _SINGULAR * stretch[:, 0])
+    x, y, z = np.moveaxis(np.where(finite[:, None, None], matrices, 0.0)[:, :3, :3], 2, 0)
+    adjugate = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
+    determinant = np.einsum("ni,ni->n", x, adjugate[:, 0])
+    size = np.sqrt((x * x + y * y + z * z).sum(axis=1) * (adjugate * adjugate).sum(axis=(1, 2)))
+    return np.abs(determinant) > _SINGULAR * size  # the inverse is the adjugate over the determinant
 
 
 def keeps_shapes(matrices):
@@ -51,7 +54,7 @@ def keeps_shapes(matrices):
 
 
 def place_shape(scene, shape, matrices, materials, name):
-    """Put copies of a `Shape` into the engine scene: object to world `matrices` (n, 4, 4), the scene's material for each slot.
+    """Put copies of a `Shape` into the engine scene: `matrices` (n, 4, 4) object to world, the material of each slot.
 
     Copies that keep their form become primitives in world space; the others, stretched, instances.
     """

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The full sync: everything that Blender's depsgraph shows becomes one engine scene."""
 
 from ..engine.scene import Scene
@@ -14,13 +15,15 @@ from .world import read_world
 def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report):
     """The engine Scene of a depsgraph, for a frame of width x height pixels.
 
-    `engine`: the RenderEngine that asks, None outside of a render. `camera`: an engine Camera to use instead of the scene's.
-    `report(level, message)` is called once for each thing that is not rendered as it is. Raises SceneError where there is no
-    camera. No reference to Blender's data is kept.
+    `engine`: the RenderEngine that asks, None outside of a render. `camera`: an engine Camera to use instead of the
+    scene's. `report(level, message)` is called once for each thing that is not rendered as it is. Raises SceneError
+    where there is no camera. No reference to Blender's data is kept.
     """
     reports = Reports(report)
     if camera is None:
         camera = camera_of_render(engine, depsgraph, width, height, reports=reports)
+    if depsgraph.scene_eval.render.use_motion_blur:
+        reports.warn("motion blur is not rendered")
     scene = Scene(camera=camera)
     images = Images(scene, reports)
     view_layer = depsgraph.view_layer_eval

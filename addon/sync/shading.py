@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's materials as the engine's: node trees of the basic shaders with constants and images."""
 
 from dataclasses import dataclass
@@ -65,6 +66,8 @@ def read_material(material, reader):
         lobes = Lobes(clear=WHITE)  # a body of volume alone has no surface
     else:
         lobes = read_closure(surface, reader)
+    if lobes.blurred:
+        reader.warn("its mix of an image with another or with a color is rendered as the stronger image, brightened")
     return lobes.material(_absorption(volume, reader))
 
 

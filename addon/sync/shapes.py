@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Recognised or chosen shapes as the engine's primitives, in object space."""
 
 from dataclasses import dataclass
@@ -13,8 +14,8 @@ _FLAT = 1e-6
 
 @dataclass(frozen=True)
 class Shape:
-    """Primitives that make up one exact shape, their material being the slot, in a space that `local` (4, 4) takes to the
-    object's."""
+    """Primitives that make up one exact shape, their material being the slot, in a space that `local` (4, 4) takes to
+    the object's."""
 
     primitives: tuple
     local: np.ndarray
@@ -34,8 +35,8 @@ def plane_shape():
 
 
 def fitted(kind, positions):
-    """The shape inscribed in the bounding box of positions (n, 3) as a Recognition of `kind`, or None where the box is flat
-    in a direction that the shape needs. Its axis is Z, a cone's tip is up."""
+    """The shape inscribed in the bounding box of positions (n, 3) as a Recognition of `kind`, or None where the box
+    is flat in a direction that the shape needs. Its axis is Z, a cone's tip is up."""
     low, high = positions.min(axis=0).astype(np.float64), positions.max(axis=0).astype(np.float64)
     half = (high - low) / 2.0
     needed = 2 if kind == "DISC" else 3
@@ -44,7 +45,9 @@ def fitted(kind, positions):
     if kind == "DISC":
         half[2] = half[:2].max()  # any: a disc has no height
     local = np.column_stack([np.diag(half), (low + high) / 2.0])
-    return Recognition(kind, f"{kind.lower()}: chosen in the object's settings, fits its bounding box", _unit(kind), local, True)
+    return Recognition(
+        kind, f"{kind.lower()}: chosen in the object's settings, fits its bounding box", _unit(kind), local, True
+    )
 
 
 def _unit(kind):

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Numbers and colours that feed a shader: constants, images and the few nodes between that keep them such."""
 
 from dataclasses import dataclass
@@ -12,8 +13,8 @@ _IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 @dataclass(frozen=True)
 class UvSource:
-    """Where images take their uv: the uv map called `map` (empty: the active one), then the affine `transform`, the rows
-    of a (2, 3) matrix one after the other, as a Mapping node gives it."""
+    """Where images take their uv: the uv map called `map` (empty: the active one), then the affine `transform`, the
+    rows of a (2, 3) matrix one after the other, as a Mapping node gives it."""
 
     map: str = ""
     transform: tuple = _IDENTITY
@@ -33,11 +34,12 @@ class UvSource:
 class NodeReader:
     """Reads the nodes of one material, world or light, called `user` in reports; notes the uv that its images take.
 
-    `images` (an `Images`) may be None where only the uv is wanted: no image is then read.
+    `images` (an `Images`) may be None where only the uv is wanted: no image is then read. `panorama`: colours are
+    looked up by direction, as in a world.
     """
 
-    def __init__(self, user, images, reports):
-        self.user, self._images, self._reports = user, images, reports
+    def __init__(self, user, images, reports, *, panorama=False):
+        self.user, self._images, self._reports, self._panorama = user, images, reports, panorama
         self.uv = None
 
     def warn(self, message):
@@ -69,7 +71,7 @@ class NodeReader:
             return _constant(source.constant)
         if source.type in ("RGB", "VALUE"):
             return _constant(source.output.default_value)
-        if source.type in ("TEX_IMAGE", "TEX_ENVIRONMENT"):
+        if source.type == "TEX_IMAGE" or (source.type == "TEX_ENVIRONMENT" and self._panorama):
             return self._image(source)
         if source.type in ("MIX", "MIX_RGB") and (mixed := self._mixed(source)) is not None:
             return mixed
@@ -84,7 +86,9 @@ class NodeReader:
         node = source.node
         if source.type == "TEX_IMAGE":
             if node.projection != "FLAT":
-                self.warn(f"node {node.name!r}: {node.projection.lower()} projection is not rendered, flat is used instead")
+                self.warn(
+                    f"node {node.name!r}: {node.projection.lower()} projection is not rendered, flat is used instead"
+                )
             self._use_uv(self.uv_source(source.input("Vector")))
         if self._images is None:
             return Value((1.0, 1.0, 1.0))
@@ -120,7 +124,7 @@ class NodeReader:
         return UvSource(inner.map, tuple(float(x) for x in np.round(after, 7).ravel()))
 
     def _mixed(self, source):
-        """A Mix node of colours as a `Value`: blends by a constant factor, and products; None where it is something else."""
+        """A Mix node of colours that blends, adds or multiplies by a constant factor; None where it does not."""
         node = source.node
         new = source.type == "MIX"
         if new and node.data_type != "RGBA":
@@ -146,9 +150,10 @@ class NodeReader:
 def mapping_matrix(source, reader):
     """The (4, 4) matrix of a Mapping node, its linked inputs by their own values."""
     node = source.node
-    location, angles, scale = (
-        _vector(reader, source.input(name)) for name in ("Location", "Rotation", "Scale")
-    )
+    if node.vector_type == "NORMAL":
+        reader.not_understood(source, "no mapping")
+        return np.eye(4)
+    location, angles, scale = (_vector(reader, source.input(name)) for name in ("Location", "Rotation", "Scale"))
     matrix = np.eye(4)
     matrix[:3, :3] = _rotation(angles) * scale
     if node.vector_type in ("POINT", "TEXTURE"):

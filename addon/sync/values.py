@@ -1,11 +1,14 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Colours of a shader as the engine takes them: a constant, or a constant times an image."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 #: Rec. 709 luminance.
 _LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
+#: An addition of less than this part is too weak to be told about.
+_UNSEEN = 0.1
 MISSING = (1.0, 0.0, 1.0)  # the pink that Blender shows for an image that is not there
 
 
@@ -15,11 +18,15 @@ def luminance(rgb):
 
 @dataclass(frozen=True)
 class Value:
-    """`rgb` (3,), times the image number `image` of the scene (-1: none), whose mean colour is `mean` (3,)."""
+    """`rgb` (3,), times the image number `image` of the scene (-1: none), whose mean colour is `mean` (3,).
+
+    `blurred`: something that varies differently over the surface was added, and only its average is in it.
+    """
 
     rgb: tuple = (0.0, 0.0, 0.0)
     image: int = -1
     mean: tuple = (1.0, 1.0, 1.0)
+    blurred: bool = False
 
     @property
     def average(self):
@@ -33,16 +40,17 @@ class Value:
 
     def times(self, factor):
         """Multiplied by a number or by a colour (3,)."""
-        return Value(tuple(np.multiply(self.rgb, factor)), self.image, self.mean)
+        return replace(self, rgb=tuple(np.multiply(self.rgb, factor)))
 
     def plus(self, other):
         """The sum. Of two different images the stronger one stays; the other is added as its average."""
         if other.image == self.image:
-            return Value(tuple(np.add(self.rgb, other.rgb)), self.image, self.mean)
+            return replace(self, rgb=tuple(np.add(self.rgb, other.rgb)), blurred=self.blurred or other.blurred)
         if other.weight > self.weight or (other.image >= 0 > self.image and other.weight == self.weight):
             return other.plus(self)
         share = np.divide(other.average, np.maximum(self.mean, 1e-3))
-        return Value(tuple(np.add(self.rgb, share)), self.image, self.mean)
+        blurred = self.blurred or other.blurred or other.weight > _UNSEEN * self.weight
+        return replace(self, rgb=tuple(np.add(self.rgb, share)), blurred=blurred)
 
     def sqrt(self):
         """The root, of an image by its average."""

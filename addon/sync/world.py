@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's world: what a ray sees that hits nothing."""
 
 from dataclasses import replace
@@ -18,7 +19,7 @@ def read_world(world, scene, images, reports):
     tree = node_tree(world)
     if tree is None:
         return _of(Value(tuple(world.color)))
-    reader = NodeReader(f"world {world.name!r}", images, reports)
+    reader = NodeReader(f"world {world.name!r}", images, reports, panorama=True)
     surface = output_source(tree, "Surface")
     volume = output_source(tree, "Volume")
     if volume is not None and volume.node is not None:
@@ -45,7 +46,9 @@ def _oriented(source, color, scene, reader):
         reader.warn(f"node {source.node.name!r}: its image is rendered as a panorama")
         return color
     if source.node.projection != "EQUIRECTANGULAR":
-        reader.warn(f"node {source.node.name!r}: mirror ball projection is not rendered, equirectangular is used instead")
+        reader.warn(
+            f"node {source.node.name!r}: mirror ball projection is not rendered, equirectangular is used instead"
+        )
     vector = source.input("Vector")
     if vector.node is None or (vector.type == "TEX_COORD" and vector.output.identifier == "Generated"):
         return color
@@ -53,13 +56,14 @@ def _oriented(source, color, scene, reader):
     if matrix is None or not np.allclose(matrix[2], (0.0, 0.0, 1.0), atol=1e-6):
         reader.not_understood(vector, "the image unturned")
         return color
-    return replace(color, image=scene.add_image(_turned(scene.images[color.image], matrix)))
+    scene.images[color.image] = _turned(scene.images[color.image], matrix)  # panoramas are the world's alone
+    return color
 
 
 def _turned(image, matrix):
     """The image about Z as a Mapping node with `matrix` (3, 3) turns it, to the nearest column.
 
-    The pixel for direction d is looked up at matrix @ d; u falls as the angle grows, so a turn by +a moves columns by +a.
+    The pixel for direction d is looked up at matrix @ d; u falls as the angle grows: a turn by a moves columns by a.
     """
     angle = np.arctan2(matrix[1, 0], matrix[0, 0])
     columns = round(angle / (2.0 * np.pi) * image.pixels.shape[1])

@@ -119,9 +119,7 @@ def test_plane_mesh_lies_in_the_plane_and_its_uv_goes_on_beyond_it():
     assert np.ptp(point, axis=0).tolist() == [5.0, 5.0, 0.0]
 
 
-@pytest.mark.parametrize(
-    "kind, exact", [("sphere", 4 / 3 * np.pi), ("cylinder", 2 * np.pi), ("cone", 2 / 3 * np.pi)]
-)
+@pytest.mark.parametrize("kind, exact", [("sphere", 4 / 3 * np.pi), ("cylinder", 2 * np.pi), ("cone", 2 / 3 * np.pi)])
 def test_bodies_are_closed_and_face_outwards(kind, exact):
     mesh = add(kind).data
     used = np.zeros(len(mesh.edges), int)

@@ -1,5 +1,6 @@
 """Images: colour spaces, alpha, sampling, sharing, and what is missing."""
 
+import bpy
 import numpy as np
 import pytest
 
@@ -42,8 +43,7 @@ def test_byte_image_is_decoded_bottom_row_first():
 
 
 def test_non_color_image_is_raw():
-    picture = image(ramp())
-    picture.colorspace_settings.name = "Non-Color"
+    picture = image(ramp(), is_data=True)
     (read,) = synced_with(textured(picture)).scene.images
     np.testing.assert_allclose(read.pixels, ramp(), atol=1e-6)
 
@@ -86,8 +86,6 @@ def test_an_image_is_shared_by_all_its_materials():
 
 
 def test_missing_file_is_pink_and_named(tmp_path):
-    import bpy
-
     saved = image(ramp(), "lost")
     path = tmp_path / "lost.png"
     saved.filepath_raw, saved.file_format = str(path), "PNG"
@@ -101,17 +99,14 @@ def test_missing_file_is_pink_and_named(tmp_path):
 
 
 def test_file_on_disk_and_packed(tmp_path):
-    import bpy
-
     saved = image(ramp(), "kept")
     path = tmp_path / "kept.png"
     saved.filepath_raw, saved.file_format = str(path), "PNG"
     saved.save()
     on_disk, packed = (bpy.data.images.load(str(path)) for _ in range(2))
     packed.pack()
-    for picture in (on_disk, packed):
-        bpy.ops.wm.read_factory_settings  # the images stay: nothing is reset between the two
-        read = synced_with(textured(picture)).scene.images[-1]
+    assert on_disk.name != packed.name
+    for read in synced_with(textured(on_disk, "a"), textured(packed, "b")).scene.images:
         np.testing.assert_allclose(read.pixels[..., :3], srgb_to_linear(ramp()[..., :3]), atol=2e-6)
 
 

@@ -79,7 +79,7 @@ def test_light_nodes():
     add_camera()
     data = bpy.data.lights.new("lamp", "SUN")
     data.energy = np.pi
-    if bpy.app.version < (5, 0, 0):
+    if bpy.app.version < (5, 2, 0):
         data.use_nodes = True
     emission = next(n for n in data.node_tree.nodes if n.type == "EMISSION")
     emission.inputs["Strength"].default_value = 2.0

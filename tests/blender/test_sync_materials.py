@@ -296,7 +296,10 @@ def test_image_as_base_color_of_metal_and_body():
     picture = image(np.full((2, 2, 4), 0.5), float_buffer=True)
     read, synced = shaded(lambda tree, output: with_image(tree, output, picture, Metallic=0.5, Roughness=0.0))
     assert read.diffuse_image == read.reflect_image == 0 and len(synced.scene.images) == 1
-    assert read.diffuse == pytest.approx((0.5,) * 3) and read.reflect == pytest.approx((0.52,) * 3, abs=0.05)
+    assert not read.fresnel, "the metal's half reflects more than the body's coat"
+    assert read.diffuse == pytest.approx((0.5 * (1.0 - 0.04 * 0.5),) * 3)
+    # The coat's 0.04 of half the light is white, the image 0.5: as a multiple of the image it counts twice.
+    assert read.reflect == pytest.approx((0.5 + 2.0 * 0.02,) * 3)
 
 
 def test_image_as_emission():
@@ -305,14 +308,44 @@ def test_image_as_emission():
     assert read.glow_image == 0 and read.glow == pytest.approx((3.0,) * 3) and read.diffuse_image == -1
 
 
-def test_image_times_a_color():
+@pytest.mark.parametrize("other", ("image", "color"))
+def test_mixed_images_keep_the_stronger_one_and_are_reported(other):
+    def build(tree, output):
+        made = node(tree, "MixShader", output.inputs["Surface"])
+        made.inputs[0].default_value = 0.25
+        for i, level in ((1, 0.8), (2, 0.4)):
+            diffuse = node(tree, "BsdfDiffuse", made.inputs[i], Color=(0.4, 0.4, 0.4, 1.0))
+            if i == 1 or other == "image":
+                picture = image(np.full((2, 2, 4), level), str(i), float_buffer=True)
+                node(tree, "TexImage", diffuse.inputs["Color"]).image = picture
+
+    read, synced = shaded(build)
+    assert synced.scene.images[read.diffuse_image].name == "1"
+    assert np.array(read.diffuse) * 0.8 == pytest.approx((0.75 * 0.8 + 0.25 * 0.4,) * 3), "the average is kept"
+    assert len(synced.warnings("'stuff'", "stronger image")) == 1 == len(synced.messages)
+
+
+@pytest.mark.parametrize("kind", ("Mix", "MixRGB"))
+def test_image_times_a_color(kind):
     def build(tree, output):
         diffuse = node(tree, "BsdfDiffuse", output.inputs["Surface"])
-        made = node(tree, "MixRGB", diffuse.inputs["Color"])
+        made = tree.nodes.new(f"ShaderNode{kind}")
+        if kind == "Mix":
+            made.data_type = "RGBA"
+        factor, first, second = (socket for socket in made.inputs if socket.enabled)
         made.blend_type = "MULTIPLY"
-        made.inputs[0].default_value = 1.0
-        made.inputs[2].default_value = (1.0, 0.5, 0.25, 1.0)
-        node(tree, "TexImage", made.inputs[1]).image = image(np.ones((2, 2, 4)))
+        factor.default_value, second.default_value = 1.0, (1.0, 0.5, 0.25, 1.0)
+        node(tree, "TexImage", first).image = image(np.ones((2, 2, 4)))
+        tree.links.new(next(o for o in made.outputs if o.enabled), diffuse.inputs["Color"])
 
     read, synced = shaded(build)
     assert read.diffuse == pytest.approx((1.0, 0.5, 0.25)) and read.diffuse_image == 0 and not synced.messages
+
+
+def test_mapping_of_normals_is_reported():
+    def build(tree, output):
+        picture = with_image(tree, output, image(np.ones((2, 2, 4))))
+        node(tree, "Mapping", picture.inputs["Vector"], Scale=(2.0, 2.0, 1.0)).vector_type = "NORMAL"
+
+    _, synced = shaded(build)
+    assert len(synced.warnings("'Mapping'", "no mapping")) == 1

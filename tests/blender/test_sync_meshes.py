@@ -38,7 +38,9 @@ def test_modifiers_are_applied():
 
 def test_normals_of_smooth_and_flat_faces():
     add_camera()
-    obj = link(mesh_of([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 1), (2, 1, 1)], [(0, 1, 2, 3), (1, 4, 5, 2)]))
+    obj = link(
+        mesh_of([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 1), (2, 1, 1)], [(0, 1, 2, 3), (1, 4, 5, 2)])
+    )
     obj.data.polygons[0].use_smooth, obj.data.polygons[1].use_smooth = True, False
     triangles = triangles_of(sync().scene.instances[0])
     flat = triangles.p0[:, 2] + triangles.p1[:, 2] + triangles.p2[:, 2] > 0.5
@@ -50,7 +52,9 @@ def test_normals_of_smooth_and_flat_faces():
 
 def test_smooth_normals_are_interpolated_over_an_edge():
     add_camera()
-    obj = link(mesh_of([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 0, 1), (1, 1, 1)], [(0, 1, 2, 3), (1, 4, 5, 2)]))
+    obj = link(
+        mesh_of([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 0, 1), (1, 1, 1)], [(0, 1, 2, 3), (1, 4, 5, 2)])
+    )
     obj.data.polygons.foreach_set("use_smooth", [True, True])
     triangles = triangles_of(sync().scene.instances[0])
     corners = np.concatenate([triangles.p0, triangles.p1, triangles.p2])
@@ -274,3 +278,13 @@ def test_unknown_geometry_is_named():
     add_camera()
     link(bpy.data.volumes.new("smoke"), "cloud")
     assert len(sync().warnings("'cloud'", "volume")) == 1
+
+
+def test_flags_that_are_not_rendered_are_named():
+    add_camera()
+    quad("a", is_holdout=True)
+    quad("b", visible_shadow=False)
+    quad("c", is_shadow_catcher=True)
+    synced = sync()
+    assert synced.warnings("'a'", "holdout") and synced.warnings("'b'", "visibility")
+    assert synced.warnings("'c'", "shadow catcher") and len(synced.messages) == 3

@@ -196,8 +196,9 @@ def test_stretched_and_mirrored_plane_faces_along_its_z():
 def test_scene_setting():
     add_camera()
     flat, smooth = add("SPHERE"), add("SPHERE")
-    flat.data.polygons.foreach_set("use_smooth", [False] * len(flat.data.polygons))
-    smooth.data.polygons.foreach_set("use_smooth", [True] * len(smooth.data.polygons))
+    for obj, value in ((flat, False), (smooth, True)):
+        obj.data.polygons.foreach_set("use_smooth", [value] * len(obj.data.polygons))
+        obj.data.update()
     conic = bpy.context.scene.conic
     counts = {}
     for setting in ("ALWAYS", "SMOOTH", "NEVER"):
@@ -264,6 +265,8 @@ def test_description_of_what_is_no_mesh():
     assert described(add_camera())[0] == "NONE"
     bpy.ops.object.text_add()
     assert described(bpy.context.object) == ("MESH", "mesh: made from a text")
+    bpy.context.object.conic.primitive = "PLANE"
+    assert described(bpy.context.object)[0] == "PLANE"
     assert described(link(mesh_of([(0, 0, 0)], [])))[1] == "mesh: it has no faces"
 
 
@@ -296,3 +299,14 @@ def test_a_thousand_spheres_are_read_within_a_second():
     start = time.perf_counter()
     assert sync().scene.primitive_counts() == {"sphere": 1001}
     assert time.perf_counter() - start < 1.0
+
+
+def test_mapping_on_a_chosen_shape_is_reported():
+    add_camera()
+    obj = add("SPHERE", shape="SPHERE")
+    made, tree, picture = textured_material()
+    obj.data.materials.append(made)
+    node(tree, "Mapping", picture.inputs["Vector"], Scale=(2.0, 2.0, 1.0))
+    synced = sync()
+    assert synced.scene.primitive_counts() == {"sphere": 1}
+    assert len(synced.warnings("'Sphere'", "Mapping", "'checked'")) == 1 == len(synced.messages)

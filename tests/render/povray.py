@@ -1,6 +1,6 @@
-"""Writes an engine scene in POV-Ray 3.7's language and renders it there, with what the two have in common and no more.
+"""Writes an engine scene in POV-Ray 3.7's language and renders it there, with what both have in common.
 
-POV-Ray computes in float64, one ray through each pixel's centre. Where its light model differs, `NotInPovray` is raised:
+POV-Ray computes in float64, one ray through each pixel's centre. Where its light model differs, it is refused:
 
 - it tints shadows by the surfaces' transmittance, always;
 - it does not absorb what is reflected inside a body, so that absorption goes without reflection;
@@ -40,7 +40,11 @@ def render(scene, width, height, settings):
         source.write_text(scene_text(scene, settings))
         options = [f"+W{width}", f"+H{height}", f"+I{source}", f"+O{picture}", "+FP16", "File_Gamma=1.0"]
         done = subprocess.run(
-            [program, *options, "-A", "-D", "+WT1", "Verbose=off"], capture_output=True, text=True, timeout=120, cwd=folder
+            [program, *options, "-A", "-D", "+WT1", "Verbose=off"],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            cwd=folder,
         )
         if done.returncode or not picture.is_file():
             raise RuntimeError(f"povray failed:\n{done.stderr[-3000:]}")
@@ -187,8 +191,8 @@ def _geometry(geometry, materials, matrix=None):
         if kind not in ("disc", "triangle"):
             texts += _WRITERS[kind](part, closed)
     if discs:
-        rows = [row for row in range(len(discs)) if _end(discs.center[row], discs.radius[row], discs.material[row]) not in used]
-        texts += _discs(discs.take(rows))
+        free = [_end(*row) not in used for row in zip(discs.center, discs.radius, discs.material, strict=True)]
+        texts += _discs(discs.take(np.array(free)))
     if "triangle" in parts:
         texts += _meshes(parts["triangle"])
     placed = "" if matrix is None else f"matrix {_vector(np.asarray(matrix)[:3].T.ravel())}"

@@ -1,9 +1,10 @@
-"""Pictures against POV-Ray: the same scene and light model, each primitive alone, and all together with mirror and glass.
+"""Pictures against POV-Ray: same scene, same light model, each primitive alone, and all together with mirror and glass.
 
-Two pictures are made of each scene: one where every material glows in a colour of its own, which says what is seen where,
-and the lit one, which is compared where both see the same.
+Two pictures are made of each scene: one where every material glows in a colour of its own, which says what is seen
+where, and the lit one, which is compared where both see the same.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +17,8 @@ from .compare import psnr, save_difference, silhouette_distance
 
 SIZE = (200, 150)
 SETTINGS = Settings(max_depth=8, weight_cutoff=0.0, tinted_shadows=True)
+DECIBELS = 40.0
+TYPICAL_DIFFERENCE = 2e-4
 RED = Material(diffuse=(0.75, 0.2, 0.1))
 
 
@@ -42,25 +45,32 @@ def seen(pixels):
     return steps @ (1, 4, 16)
 
 
-def assert_same_picture(device, scene, name, decibels=40.0):
-    """Silhouettes of all materials within a pixel, and the PSNR where both see the same. Returns the PSNR."""
-    ours, theirs = (seen(picture) for picture in both(device, identities(scene)))
-    for code in np.unique(np.concatenate([ours, theirs])):
-        distance = silhouette_distance(ours == code, theirs == code)
+def assert_same_picture(device, scene, name):
+    """Silhouettes of all materials within a pixel, and the values where both see the same: by PSNR, and 95 of 100
+    pixels equal to what float32 and 16-bit files leave. So a small error all over does not hide behind single pixels
+    where a refracted ray or a shadow ray just passes an edge."""
+    (ours, theirs), (our_ids, their_ids) = both(device, scene, identities(scene))
+    our_ids, their_ids = seen(our_ids), seen(their_ids)
+    for code in np.unique(np.concatenate([our_ids, their_ids])):
+        distance = silhouette_distance(our_ids == code, their_ids == code)
         assert distance <= 1, f"{name}: the silhouette of material {code - 1} is {distance} pixels off"
-    common = ours == theirs
+    common = our_ids == their_ids
     assert common.mean() > 0.98, f"{name}: the pictures see the same in {common.mean():.1%} of the pixels only"
-    ours, theirs = both(device, scene)
     ratio = psnr(ours, theirs, common)
-    if ratio < decibels:
+    typical = np.quantile(np.abs(np.minimum(ours, 1.0) - theirs).max(axis=-1)[common], 0.95)
+    if ratio < DECIBELS or typical > TYPICAL_DIFFERENCE:
         path = save_difference(f"povray_{name}", ours, theirs)
-        pytest.fail(f"{name}: {ratio:.1f} dB, less than {decibels}; ours, POV-Ray's and 16 times the difference: {path}")
-    return ratio
+        pytest.fail(
+            f"{name}: {ratio:.1f} dB, typical difference {typical:.2g}; ours, POV-Ray's, 16 x difference: {path}"
+        )
 
 
-def both(device, scene):
-    """Pixels (h, w, 3) of the engine and of POV-Ray."""
-    return render(scene, *SIZE, SETTINGS, device=device).pixels[..., :3], povray.render(scene, *SIZE, SETTINGS)
+def both(device, *scenes):
+    """Pairs of pixels (h, w, 3), the engine's and POV-Ray's, which mostly waits as it starts: its runs go at once."""
+    with ThreadPoolExecutor() as pool:
+        theirs = [pool.submit(povray.render, scene, *SIZE, SETTINGS) for scene in scenes]
+        ours = [render(scene, *SIZE, SETTINGS, device=device).pixels[..., :3] for scene in scenes]
+        return [(our, their.result()) for our, their in zip(ours, theirs, strict=True)]
 
 
 # Each primitive alone.
@@ -77,15 +87,23 @@ def triangle(scene):
 
 
 def smooth_triangles(scene):
-    """A roof whose ridge is smoothed, and a triangle whose three normals all differ."""
-    ridge, left, right = (0.0, -0.6, 1.0), (-0.6, 0.0, 1.0), (0.6, 0.0, 1.0)
+    """A roof whose ridge is smoothed, and a triangle with three different normals; of length 1, as POV-Ray makes them."""
+    normals = [
+        (0.0, -0.6, 1.0),
+        (-0.6, 0.0, 1.0),
+        (0.6, 0.0, 1.0),
+        (-0.5, -0.5, 1.0),
+        (0.9, -0.2, 0.5),
+        (0.1, -0.9, 0.6),
+    ]
+    ridge, left, right, a, b, c = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
     scene.add_triangles(
         [(-1.5, -1.0, 0.3), (0.0, -1.0, 1.2), (0.2, 0.8, 0.2)],
         [(0.0, -1.0, 1.2), (1.4, -1.0, 0.2), (1.6, 0.9, 0.6)],
         [(-1.2, 1.0, 0.6), (-1.2, 1.0, 0.6), (0.4, 0.5, 1.9)],
-        n0=[left, ridge, (-0.5, -0.5, 1.0)],
-        n1=[ridge, right, (0.9, -0.2, 0.5)],
-        n2=[left, left, (0.1, -0.9, 0.6)],
+        n0=[left, ridge, a],
+        n1=[ridge, right, b],
+        n2=[left, left, c],
     )
 
 
@@ -231,14 +249,18 @@ def test_absorption(device, build):
 
 
 def test_nested_media(device):
-    """A ball of water in a ball of glass that also holds a bubble: each surface between two media."""
-    scene = stage(Material.glass(ior=1.5), Material.glass(ior=1.33), Material.glass(ior=1.0003))
+    """A ball of water in a ball of glass that also holds a bubble: each surface between two media.
+
+    Without Fresnel: for the reflection where a ray leaves a body within a body, POV-Ray 3.7 takes 1 for the relative
+    index. Its refraction there is right.
+    """
+    scene = stage(*(Material(diffuse=0.0, transmit=1.0, fresnel=False, ior=ior) for ior in (1.5, 1.33, 1.0003)))
     scene.add_spheres([(0.2, 0.0, 1.0), (0.5, 0.0, 0.9), (-0.35, 0.0, 1.1)], [0.95, 0.5, 0.25], [3, 4, 5])
     assert_same_picture(device, scene, "nested_media")
 
 
 def test_constant_shares(device):
-    """The paper's colour class without Fresnel: constant shares of mirror and refraction, all of it at total reflection."""
+    """The paper's colour class without Fresnel: constant shares of mirror and refraction, their sum at total reflection."""
     scene = stage(Material(diffuse=0.0, reflect=0.2, transmit=0.8, fresnel=False, ior=1.5))
     glass_cylinder(scene)
     assert_same_picture(device, scene, "constant_shares")
@@ -256,7 +278,7 @@ def test_coat_and_highlight(device):
     assert_same_picture(device, scene, "coat_and_highlight")
 
 
-def everything(eye=(3.0, -5.0, 3.2)):
+def everything():
     """All kinds together, with mirror, glass, coat and absorption, over a floor that mirrors a little."""
     scene = stage(
         Material.mirror((0.9, 0.9, 0.85)),
@@ -264,13 +286,15 @@ def everything(eye=(3.0, -5.0, 3.2)):
         Material.plastic((0.1, 0.3, 0.7)),
         Material(diffuse=0.0, transmit=1.0, fresnel=False, ior=1.1, absorption=(0.2, 0.6, 1.0)),
         Material(diffuse=(0.7, 0.6, 0.2)),
-        eye=eye,
     )
     scene.materials[0] = Material(diffuse=(0.6, 0.6, 0.6), reflect=0.15, fresnel=False)
     scene.add_spheres([(-0.9, 0.6, 0.7), (0.7, -0.6, 0.6)], [0.7, 0.6], [3, 4])
-    scene.add_cylinders([(1.6, 0.4, 0.0), (-1.5, -1.2, 0.3)], [(1.6, 0.4, 1.1), (-0.7, -1.6, 0.5)], 0.3, material=[5, 7])
+    scene.add_cylinders(
+        [(1.6, 0.4, 0.0), (-1.5, -1.2, 0.3)], [(1.6, 0.4, 1.1), (-0.7, -1.6, 0.5)], 0.3, material=[5, 7]
+    )
     scene.add_cylinders((-2.4, 0.0, 0.0), (-2.4, 0.0, 0.7), 0.35, material=7, caps=False)
-    scene.add_cones([(-0.3, -1.9, 0.0), (0.6, 1.1, 0.0)], [(-0.3, -1.9, 0.8), (0.6, 1.1, 1.2)], 0.4, [0.0, 0.2], [5, 6])
+    scene.add_cones((-0.3, -1.9, 0.0), (-0.3, -1.9, 0.8), 0.4, material=5)
+    scene.add_cones((0.6, 1.1, 0.02), (0.6, 1.1, 1.2), 0.4, 0.2, 6)
     scene.add_discs((1.5, -1.9, 0.3), (0.3, -0.3, 1.0), 0.4, 7)
     scene.add_triangles((0.4, 0.3, 1.9), (1.2, 0.9, 1.5), (0.2, 1.3, 1.7), material=5)
     inner = Geometry(Spheres(center=(0.0, 0.0, 0.0), radius=0.5), Triangles(**cube((0.0, 0.0, 0.9), 0.3), material=1))

@@ -14,6 +14,9 @@ ROUNDOFF = 2.0**-24
 #: GLSL's answer is the exact one for a ray and a primitive moved by at most this many roundings of the lengths that it
 #: was computed from: about one for each operation between the inputs and the roots.
 BACKWARD_ROUNDINGS = 16.0
+#: A triangle is decided by its edges, each with an error of its own; where a sliver is seen edge-on, two edges that move
+#: apart move their vertex far along both.
+SLIVER_ROUNDINGS = 64.0
 
 
 def log_uniform(rng, low, high, size):
@@ -196,6 +199,8 @@ def resizings(primitives, amount, moved):
             middle = (primitives.base + primitives.apex) / 2.0
             values |= {name: middle + (getattr(primitives, name) - middle) * factor for name in ("base", "apex")}
         yield primitives._with(values)
+    if primitives.kind == "cone":  # where the side ends is told by the height: far out, where the cone is flat
+        yield from longer_and_shorter(primitives, moved)
     if primitives.kind == "triangle":  # each vertex has roundings of its own, which turn a sliver's plane
         p0, p1, p2 = primitives.p0, primitives.p1, primitives.p2
         normal = normalized(np.cross(p1 - p0, p2 - p0))
@@ -205,9 +210,27 @@ def resizings(primitives, amount, moved):
                 yield primitives._with({name: getattr(primitives, name) + moved * way})
 
 
+def longer_and_shorter(cones, moved):
+    """The same sides, ending a little higher or lower."""
+    axis = cones.apex - cones.base
+    shares = moved[:, 0] / np.linalg.norm(axis, axis=-1)
+    for share in (shares, -shares):
+        change = share * (cones.apex_radius - cones.base_radius)
+        sign = np.sign(cones.base_radius + cones.apex_radius)
+        base_radius, apex_radius = cones.base_radius - change, cones.apex_radius + change
+        yield cones._with(
+            {
+                "base": cones.base - share[:, None] * axis,
+                "apex": cones.apex + share[:, None] * axis,
+                "base_radius": np.where(base_radius * sign > 0.0, base_radius, 0.0),
+                "apex_radius": np.where(apex_radius * sign > 0.0, apex_radius, 0.0),
+            }
+        )
+
+
 def assert_same_hits(t, primitives, origin, direction, roundings=BACKWARD_ROUNDINGS, t_min=0.0):
-    """t (n,) of GLSL, inf for a miss, is the reference's up to the backward error; at least a quarter must be hits that
-    the error cannot flip, so that the test says something. Returns which rows are hits in both."""
+    """t (n,) of GLSL, inf for a miss, is the reference's up to the backward error. Returns which rows are hits in both
+    that the error cannot flip: the caller says how many there must be for the test to mean something."""
     exact, others = perturbed(primitives, origin, direction, roundings, t_min)
     assert not np.isnan(t).any()
     hit = np.isfinite(exact)
@@ -229,3 +252,46 @@ def describe(rows, primitives, origin, direction, t, exact):
     columns = {c.name: np.asarray(getattr(primitives, c.name)[i]).tolist() for c in primitives.columns}
     ray = f"origin {origin[i].tolist()} direction {direction[i].tolist()}"
     return f"{int(rows.sum())} of {len(rows)}; number {i}: t {t[i]!r}, float64 {exact[i]!r}; {ray}; {columns}"
+
+
+def signed_distance(primitives, point):
+    """Distance (n,) of points from the surfaces, endless where they have an edge; negative inside or below the normal."""
+    p = {c.name: np.asarray(getattr(primitives, c.name), np.float64) for c in primitives.columns}
+    if primitives.kind == "sphere":
+        return np.linalg.norm(point - p["center"], axis=-1) - np.abs(p["radius"])
+    if primitives.kind in ("disc", "plane"):
+        return np.sum((point - p["center" if primitives.kind == "disc" else "point"]) * p["normal"], axis=-1)
+    if primitives.kind == "triangle":
+        normal = normalized(np.cross(p["p1"] - p["p0"], p["p2"] - p["p0"]))
+        return np.sum((point - p["p0"]) * normal, axis=-1)
+    base_radius = np.abs(p.get("base_radius", p.get("radius")))
+    apex_radius = np.abs(p.get("apex_radius", p.get("radius")))
+    height, distance_to_axis, length = axis_coordinates(primitives, point)
+    slope = (apex_radius - base_radius) / length
+    return (distance_to_axis - base_radius - slope * height) / np.sqrt(1.0 + slope**2)
+
+
+def axis_coordinates(primitives, point):
+    """Height over the base, distance from the axis, and the whole height, of points about cylinders or cones: (n,) each."""
+    axis = primitives.apex - primitives.base
+    length = np.linalg.norm(axis, axis=-1)
+    height = np.sum((point - primitives.base) * axis, axis=-1) / length
+    across = point - primitives.base - (height / length)[:, None] * axis
+    return height, np.linalg.norm(across, axis=-1), length
+
+
+def sharpest_radius(primitives, point):
+    """The length (n,) over which normal and uv turn around or run once through the texture at a point."""
+    if primitives.kind == "sphere":  # the smaller of the globe's radius and that of the circle of latitude
+        across = np.cross(point - primitives.center, primitives.pole)
+        return np.maximum(np.linalg.norm(across, axis=-1), 1e-300)
+    if primitives.kind == "disc":
+        return primitives.radius
+    if primitives.kind == "plane":
+        return primitives.tile
+    if primitives.kind == "triangle":
+        edges = (primitives.p1 - primitives.p0, primitives.p2 - primitives.p1, primitives.p0 - primitives.p2)
+        area = np.linalg.norm(np.cross(edges[0], edges[1]), axis=-1)
+        return area / np.max([np.linalg.norm(e, axis=-1) for e in edges], axis=0)
+    _, distance_to_axis, length = axis_coordinates(primitives, point)
+    return np.minimum(np.maximum(distance_to_axis, 1e-300), length)

@@ -1,0 +1,311 @@
+"""F12: the whole way from Blender's scene to the written picture, through the RenderEngine."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+
+from addon.render_engine import ConicRenderEngine
+
+ROOT = Path(__file__).resolve().parents[2]
+WIDTH, HEIGHT = 64, 48
+SKY = (0.25, 0.5, 1.0)
+GLOW = (2.0, 0.5, 0.125)
+
+
+@pytest.fixture
+def scene():
+    """A glowing sphere of radius 1 in the middle of an orthographic view 6 wide, in front of a sky of one color."""
+    scene = bpy.context.scene
+    bpy.ops.object.camera_add(location=(0.0, 0.0, 10.0))
+    scene.camera = bpy.context.object
+    scene.camera.data.type = "ORTHO"
+    scene.camera.data.ortho_scale = 6.0
+    bpy.ops.conic.sphere_add()
+    bpy.context.object.data.materials.append(glowing())
+    scene.world = bpy.data.worlds.new("World")
+    nodes_of(scene.world)["Background"].inputs["Color"].default_value = (*SKY, 1.0)
+    render = scene.render
+    render.engine = "CONIC"
+    render.resolution_x, render.resolution_y, render.resolution_percentage = WIDTH, HEIGHT, 100
+    render.image_settings.file_format = "OPEN_EXR"
+    render.image_settings.color_depth = "32"
+    scene.conic.samples = 1
+    return scene
+
+
+def nodes_of(owner):
+    """The nodes of a new material or world, which have them only on demand before 5.0."""
+    if bpy.app.version < (5, 0, 0):
+        owner.use_nodes = True
+    return owner.node_tree.nodes
+
+
+def glowing(color=GLOW):
+    """A material that shines in `color` and reflects nothing."""
+    material = bpy.data.materials.new("glowing")
+    nodes = nodes_of(material)
+    emission = nodes.new("ShaderNodeEmission")
+    emission.inputs["Color"].default_value = (*color, 1.0)
+    output = next(node for node in nodes if node.type == "OUTPUT_MATERIAL")
+    material.node_tree.links.new(emission.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def picture(path):
+    """The pixels (h, w, 4) of an EXR, bottom row first."""
+    image = bpy.data.images.load(str(path))
+    width, height = image.size
+    pixels = np.empty(width * height * 4, np.float32)
+    image.pixels.foreach_get(pixels)
+    bpy.data.images.remove(image)
+    return pixels.reshape(height, width, 4)
+
+
+def rendered(scene, path):
+    """Render the scene; its pixels (h, w, 4)."""
+    scene.render.filepath = str(path / "picture.exr")
+    bpy.ops.render.render(write_still=True)
+    return picture(scene.render.filepath)
+
+
+def is_sphere(pixels):
+    """Where the glowing sphere is, (h, w) bool."""
+    return pixels[..., 0] > 1.0
+
+
+def test_picture_is_right_to_the_pixel(scene, tmp_path):
+    pixels = rendered(scene, tmp_path)
+    x, y = np.meshgrid(np.arange(WIDTH) + 0.5 - WIDTH / 2, np.arange(HEIGHT) + 0.5 - HEIGHT / 2)
+    inside = np.hypot(x, y) < WIDTH / 6
+    np.testing.assert_array_equal(is_sphere(pixels), inside)
+    np.testing.assert_allclose(pixels[inside], [(*GLOW, 1.0)] * inside.sum(), rtol=1e-5)
+    np.testing.assert_allclose(pixels[~inside], [(*SKY, 1.0)] * (~inside).sum(), rtol=1e-5)
+
+
+def test_resolution_percentage(scene, tmp_path):
+    scene.render.resolution_percentage = 50
+    pixels = rendered(scene, tmp_path)
+    assert pixels.shape == (HEIGHT // 2, WIDTH // 2, 4)
+    assert is_sphere(pixels).mean() == pytest.approx(np.pi / (6.0 * 4.5), rel=0.05)
+
+
+def test_transparent_film_is_premultiplied(scene, tmp_path):
+    scene.render.film_transparent = True
+    scene.conic.samples = 16
+    pixels = rendered(scene, tmp_path)
+    alpha = pixels[..., 3]
+    assert (alpha == 0.0).any() and (alpha == 1.0).any() and ((alpha > 0.0) & (alpha < 1.0)).any()
+    np.testing.assert_allclose(pixels[..., :3], alpha[..., None] * np.array(GLOW), atol=1e-5)
+
+
+def test_samples_smooth_the_edge(scene, tmp_path):
+    one = rendered(scene, tmp_path)
+    scene.conic.samples = 64
+    many = rendered(scene, tmp_path)
+    exact = np.pi / (6.0 * 4.5) * (GLOW[0] - SKY[0]) + SKY[0]
+    assert abs(many[..., 0].mean() - exact) < 0.002 * exact
+    assert abs(many[..., 0].mean() - exact) <= abs(one[..., 0].mean() - exact)
+    assert len(np.unique(many[..., 0].round(4))) > 10 > len(np.unique(one[..., 0].round(4)))
+
+
+@pytest.mark.parametrize("crop", [False, True])
+@pytest.mark.parametrize("low, high", [((0.25, 0.25), (0.75, 1.0)), ((0.31, 0.17), (0.77, 0.63))])
+def test_border_is_that_part_of_the_picture(scene, tmp_path, low, high, crop):
+    scene.conic.samples = 4
+    whole = rendered(scene, tmp_path)
+    render = scene.render
+    render.use_border, render.use_crop_to_border = True, crop
+    render.border_min_x, render.border_min_y, render.border_max_x, render.border_max_y = *low, *high
+    pixels = rendered(scene, tmp_path)
+    x0, y0 = int(np.float32(low[0]) * WIDTH), int(np.float32(low[1]) * HEIGHT)
+    x1, y1 = int(np.float32(high[0]) * WIDTH), int(np.float32(high[1]) * HEIGHT)
+    expected = whole[y0:y1, x0:x1]
+    assert is_sphere(expected).any() and not is_sphere(expected).all()
+    if crop:
+        np.testing.assert_array_equal(pixels, expected)
+    else:
+        np.testing.assert_array_equal(pixels[y0:y1, x0:x1], expected)
+        outside = np.ones((HEIGHT, WIDTH), bool)
+        outside[y0:y1, x0:x1] = False
+        assert (pixels[outside][:, :3] == 0.0).all()
+
+
+def test_stereo_eyes_see_from_two_places(scene, tmp_path):
+    scene.camera.data.type = "PERSP"
+    stereo = scene.camera.data.stereo
+    stereo.convergence_mode, stereo.interocular_distance = "PARALLEL", 1.0
+    scene.render.use_multiview, scene.render.image_settings.views_format = True, "INDIVIDUAL"
+    scene.render.filepath = str(tmp_path / "eyes.exr")
+    bpy.ops.render.render(write_still=True)
+    columns = {}
+    for eye in ("L", "R"):
+        mask = is_sphere(picture(tmp_path / f"eyes_{eye}.exr"))
+        columns[eye] = np.nonzero(mask)[1].mean() + 0.5 - WIDTH / 2
+    shift = 0.5 / 10.0 * scene.camera.data.lens / scene.camera.data.sensor_width * WIDTH
+    assert columns["L"] == pytest.approx(shift, abs=0.5)
+    assert columns["R"] == pytest.approx(-shift, abs=0.5)
+
+
+def test_each_view_layer_has_its_own_objects(scene, tmp_path):
+    bpy.ops.conic.sphere_add(location=(-2.0, 0.0, 0.0), radius=0.5)
+    left = bpy.context.object
+    left.data.materials.append(glowing())
+    collection = bpy.data.collections.new("left")
+    scene.collection.children.link(collection)
+    scene.collection.objects.unlink(left)
+    collection.objects.link(left)
+    without = scene.view_layers.new("Without")
+    without.layer_collection.children["left"].exclude = True
+    if hasattr(scene.render.image_settings, "media_type"):
+        scene.render.image_settings.media_type = "MULTI_LAYER_IMAGE"
+    scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
+    scene.render.filepath = str(tmp_path / "layers.exr")
+    bpy.ops.render.render(write_still=True)
+    red = {name: red_of(tmp_path / "layers.exr", name) for name in (scene.view_layers[0].name, "Without")}
+    assert (red["Without"][:, : WIDTH // 4] > 1.0).sum() == 0
+    assert (red[scene.view_layers[0].name][:, : WIDTH // 4] > 1.0).sum() > 50
+    assert (red["Without"][:, WIDTH // 3 :] == red[scene.view_layers[0].name][:, WIDTH // 3 :]).all()
+
+
+def red_of(path, layer):
+    """The red of a layer's Combined pass in a multilayer EXR, (h, w)."""
+    import OpenEXR
+
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        for part in file.parts:
+            for name, channel in part.channels.items():
+                if name.startswith(f"{layer}.Combined") and name.endswith(".R"):
+                    return channel.pixels
+    raise AssertionError(f"{path} has no layer {layer}")
+
+
+def test_animation_renders_each_frame_and_warns_once(scene, tmp_path, monkeypatch):
+    told = reports(monkeypatch)
+    sphere = bpy.data.objects["Sphere"]
+    for frame, x in ((1, -1.0), (3, 1.0)):
+        sphere.location.x = x
+        sphere.keyframe_insert("location", index=0, frame=frame)
+    bpy.ops.object.light_add(type="AREA", location=(0.0, 0.0, 20.0))
+    scene.frame_start, scene.frame_end = 1, 3
+    scene.render.filepath = str(tmp_path / "frame_")
+    bpy.ops.render.render(animation=True)
+    columns = [np.nonzero(is_sphere(picture(tmp_path / f"frame_000{f}.exr")))[1].mean() for f in (1, 2, 3)]
+    np.testing.assert_allclose(np.array(columns) + 0.5 - WIDTH / 2, [-WIDTH / 6, 0.0, WIDTH / 6], atol=0.6)
+    assert [level for level, message in told if "Area" in message] == ["WARNING"]
+
+
+def reports(monkeypatch):
+    """A list that fills with (level, message) of what the engine reports."""
+    told = []
+    monkeypatch.setattr(
+        ConicRenderEngine, "report", lambda self, level, message: told.append((*level, message)), raising=False
+    )
+    return told
+
+
+def test_scene_without_a_camera_is_an_error_and_no_picture(scene, tmp_path):
+    scene.camera = None
+    scene.render.filepath = str(tmp_path / "picture.exr")
+    with pytest.raises(RuntimeError, match="camera"):
+        bpy.ops.render.render(write_still=True)
+    assert not list(tmp_path.iterdir())
+
+
+def test_conics_own_errors_reach_the_user_without_a_traceback(scene, tmp_path, capfd):
+    scene.camera.scale = (0.0, 0.0, 0.0)
+    scene.view_layers.update()
+    scene.camera = bpy.data.objects.new("no camera", None)
+    with pytest.raises(RuntimeError, match="camera"):
+        rendered(scene, tmp_path)
+    assert "Traceback" not in "".join(capfd.readouterr())
+
+
+def test_empty_scene_is_sky(scene, tmp_path):
+    bpy.data.objects.remove(bpy.data.objects["Sphere"])
+    np.testing.assert_allclose(rendered(scene, tmp_path)[..., :3], np.broadcast_to(SKY, (HEIGHT, WIDTH, 3)), rtol=1e-6)
+
+
+def test_progress_and_partial_results(scene, monkeypatch):
+    from addon import render_session
+
+    seen = {"progress": [], "stats": [], "results": 0}
+
+    def update_result(_self, _result):
+        seen["results"] += 1
+
+    monkeypatch.setattr(render_session, "RESULT_SECONDS", 0.02)
+    monkeypatch.setattr(render_session, "STEP_SECONDS", 0.001)
+    monkeypatch.setattr(ConicRenderEngine, "update_progress", lambda _, p: seen["progress"].append(p), raising=False)
+    monkeypatch.setattr(ConicRenderEngine, "update_stats", lambda _, *s: seen["stats"].append(s), raising=False)
+    monkeypatch.setattr(ConicRenderEngine, "update_result", update_result, raising=False)
+    scene.conic.samples = 64
+    bpy.ops.render.render()
+    assert seen["results"] >= 2
+    assert seen["progress"] == sorted(seen["progress"]) and seen["progress"][-1] == 1.0
+    assert len(seen["progress"]) > 10
+    assert any(text.startswith("Sample ") and text.endswith("/64 | 1 sphere") for _, text in seen["stats"])
+
+
+def test_escape_ends_a_render_within_half_a_second(scene, monkeypatch):
+    pressed = []
+
+    def test_break(_self):
+        if not pressed and time.monotonic() - started > 1.0:
+            pressed.append(time.monotonic())
+        return bool(pressed)
+
+    monkeypatch.setattr(ConicRenderEngine, "test_break", test_break, raising=False)
+    scene.render.resolution_x, scene.render.resolution_y = 1920, 1080
+    scene.conic.samples = 65536
+    started = time.monotonic()
+    bpy.ops.render.render()
+    assert pressed and time.monotonic() - pressed[0] < 0.5
+
+
+# Renders the startup scene with a glass sphere and every kind of shape; sys.argv ends with the picture to write.
+BOTH_WAYS = """
+import sys, bpy, addon, atexit
+addon.register()
+atexit.register(addon.unregister)
+scene = bpy.context.scene
+bpy.ops.mesh.primitive_uv_sphere_add(location=(2.0, -1.0, 0.5))
+bpy.ops.object.shade_smooth()
+glass = bpy.data.materials.new("glass")
+if bpy.app.version < (5, 0, 0):
+    glass.use_nodes = True
+bsdf = glass.node_tree.nodes["Principled BSDF"]
+bsdf.inputs["Transmission Weight"].default_value, bsdf.inputs["Roughness"].default_value = 1.0, 0.0
+bpy.context.object.data.materials.append(glass)
+bpy.ops.conic.plane_add(location=(0.0, 0.0, -1.0))
+bpy.ops.conic.cone_add(location=(-2.0, -1.0, 0.0), radius2=0.3)
+bpy.ops.conic.cylinder_add(location=(-1.0, 3.0, 0.0))
+bpy.ops.conic.disc_add(location=(0.0, 0.0, 2.0), rotation=(0.3, 0.2, 0.0))
+render = scene.render
+render.engine = "CONIC"
+render.resolution_x, render.resolution_y, render.resolution_percentage = 96, 72, 100
+render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
+render.filepath = sys.argv[-1]
+bpy.ops.render.render(write_still=True)
+"""
+
+
+@pytest.mark.skipif(bool(bpy.app.binary_path), reason="the application does not have moderngl; bpy compares the two")
+def test_blenders_gpu_and_a_headless_context_give_the_same_picture(tmp_path):
+    pictures = {}
+    for device in ("blender", "headless"):
+        path = tmp_path / f"{device}.exr"
+        environment = {**os.environ, "CONIC_DEVICE": device, "PYTHONPATH": str(ROOT)}
+        subprocess.run(
+            [sys.executable, "-c", BOTH_WAYS, path], env=environment, capture_output=True, text=True, timeout=240
+        )
+        pictures[device] = picture(path)
+    ours, other = pictures["blender"], pictures["headless"]
+    assert ours[..., :3].std() > 0.02, "there is something to see"
+    different = np.abs(ours - other).max(axis=-1) > 1e-4 * np.maximum(1.0, np.abs(other).max(axis=-1))
+    assert different.mean() < 0.002

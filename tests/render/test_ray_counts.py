@@ -1,0 +1,71 @@
+"""Rays counted under the databases' rules, beside the numbers that their author publishes for 513 x 513 corner rays."""
+
+import pytest
+
+from addon.engine import Session, Settings
+from examples.standard_scenes import FAMILIES
+
+# Eye rays that hit, mirror rays, refracted rays, shadow rays. Any classical ray tracer is to come within 10%.
+PUBLISHED = {
+    "balls": (263169, 175095, 0, 954368),
+    "tetra": (49788, 0, 0, 46112),
+    "tree": (169836, 0, 0, 1097419),
+}
+COLUMNS = ("eye_hit", "reflect", "refract", "shadow")
+
+
+def count(device, scene, side=512):
+    """The counters of a strict picture of side x side pixels."""
+    session = Session(device)
+    try:
+        session.load(scene, Settings.strict())
+        session.start(side, side)
+        while session.step(1.0):
+            pass
+        assert session.warnings == []
+        return session.statistics()["rays"]
+    finally:
+        session.free()
+
+
+@pytest.mark.parametrize("family", PUBLISHED)
+def test_published_counts(device, family):
+    rays = count(device, FAMILIES[family]())
+    assert rays["eye"] == 513 * 513
+    # Two counters differ by far less than the 10% that are granted: by rounding along silhouettes.
+    assert [rays[name] for name in COLUMNS] == pytest.approx(PUBLISHED[family], rel=0.01)
+    assert rays["dropped"] == 0
+
+
+def test_mountain(device):
+    """Its published counts belong to its author's random numbers; what holds for every landscape is looked at here."""
+    rays = count(device, FAMILIES["mount"]())
+    hits, reflect, refract, shadow = (rays[name] for name in COLUMNS)
+    assert reflect == refract  # every hit on glass sends both, within and at total reflection too
+    assert [hits, reflect, shadow] == pytest.approx([173125, 354769, 412922], rel=0.35)
+    # At most four generations of two rays follow an eye ray, and one light gets at most one ray from each hit.
+    assert reflect + refract <= hits * (2 + 4 + 8 + 16)
+    assert shadow <= hits + reflect + refract
+
+
+def test_a_smaller_picture_counts_in_proportion(device):
+    rays = count(device, FAMILIES["balls"](), 256)
+    share = 257 * 257 / (513 * 513)
+    assert [rays[name] / share for name in COLUMNS] == pytest.approx(PUBLISHED["balls"], rel=0.02)
+
+
+def test_other_sizes_of_a_family(device):
+    """Deeper flakes show more mirrors, by ever less as they end in smaller balls; the square fills the view in any."""
+    rays = [count(device, FAMILIES["balls"](depth), 256) for depth in (2, 3, 4, 5)]
+    assert {r["eye_hit"] for r in rays} == {257 * 257}
+    reflect = [r["reflect"] for r in rays]
+    steps = [after - before for before, after in zip(reflect, reflect[1:], strict=False)]
+    assert steps[0] > steps[1] > steps[2] > 0
+
+
+def test_lattice_counts(device):
+    """Every strut is matt, every joint half a mirror; six lights each get a ray from what they face."""
+    rays = count(device, FAMILIES["lattice"](4), 128)
+    assert rays["refract"] == 0
+    assert 0 < rays["reflect"] <= 4 * rays["eye_hit"]
+    assert rays["shadow"] <= 6 * (rays["eye_hit"] + rays["reflect"])
