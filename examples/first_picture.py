@@ -94,7 +94,8 @@ def register_conic():
         import addon
 
         addon.register()
-        atexit.register(addon.unregister)
+        if not bpy.app.binary_path:  # as a module; the application has freed its classes by then
+            atexit.register(addon.unregister)
 
 
 def build_scene(atoms):

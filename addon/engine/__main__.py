@@ -63,12 +63,12 @@ def _parse(arguments):
     parser.add_argument(
         "--strict",
         action="store_true",
-        help="the databases' rules: corner rays averaged, depth 5, no cut-off, 512 512 unless --size is given",
+        help="the databases' rules: corner rays averaged, depth 5 unless --depth, no cut-off, 512 512 unless --size is given",
     )
     parser.add_argument("--stats", metavar="FILE.json", help="write ray counts, times and sizes")
     options = parser.parse_args(arguments)
-    if options.strict and (options.samples or options.depth):
-        parser.error("--strict has its own samples and depth: leave --samples and --depth out")
+    if options.strict and (options.samples or 1) > 1:
+        parser.error("--strict casts one ray through each corner of a pixel: leave --samples out")
     return options
 
 
@@ -120,12 +120,10 @@ def _check_outputs(options):
 def _settings(options):
     from .settings import Settings
 
-    if options.strict:
-        settings = Settings.strict()
-    else:
-        given = {"samples": options.samples, "max_depth": options.depth}
-        settings = Settings(**{name: value for name, value in given.items() if value is not None})
-    return replace(settings, count_rays=bool(options.stats))
+    given = {"samples": options.samples, "max_depth": options.depth}
+    given = {name: value for name, value in given.items() if value is not None}
+    settings = Settings.strict() if options.strict else Settings()
+    return replace(settings, **given, count_rays=bool(options.stats))
 
 
 def _render(file, settings, progress):

@@ -71,8 +71,11 @@ def _write_exr(path, pixels):
     openexr = _module(".exr")
     header = {"compression": openexr.ZIP_COMPRESSION, "type": openexr.scanlineimage}
     channels = {"RGBA"[: pixels.shape[2]]: np.ascontiguousarray(pixels)}
-    with openexr.File(header, channels) as file:
-        file.write(str(path))
+    try:
+        with openexr.File(header, channels) as file:
+            file.write(str(path))
+    except RuntimeError as error:  # OpenEXR's way to say that the system refuses
+        raise OSError(str(error)) from None
 
 
 def read_image(path):
@@ -104,7 +107,10 @@ def _read_png(path):
 def _read_exr(path):
     with _module(".exr").File(str(path)) as file:
         channels = file.channels()
-        pixels = np.asarray(channels.get("RGBA", channels.get("RGB", channels.get("Y"))).pixels, np.float32)
+        known = [name for name in ("RGBA", "RGB", "Y") if name in channels]
+        if not known:
+            raise ValueError(f"it has the channels {', '.join(channels)}, expected RGB, RGBA or Y")
+        pixels = np.asarray(channels[known[0]].pixels, np.float32)
     if pixels.ndim == 2:
         pixels = np.repeat(pixels[..., None], 3, axis=-1)
     return pixels if pixels.shape[-1] == 4 else np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)

@@ -84,8 +84,37 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
   int instance_top = -1; /* where the stack stood when the instance was entered */
   float scale = 1.0;
 #endif
+  bool pop = false; /* whether the next reference comes from the stack */
+  bool done = false;
   while (true) {
-    if (LEAF_COUNT(leaf) == 0) {
+    /* Down to the next leaf. Apart from the leaves' tests, which vector processors would carry along masked. */
+    while (true) {
+      if (pop) {
+#ifdef HAS_INSTANCES
+        if (top == instance_top) {
+          hit.t /= scale;
+          scale = 1.0;
+          ray = world_ray;
+          slabs = bvh_slabs(ray);
+          instance = -1;
+          instance_top = -1;
+        }
+#endif
+        if (top == 0) {
+          done = true;
+          break;
+        }
+        top--;
+        if (stack_t[top] >= hit.t) {
+          continue;
+        }
+        index = stack_index[top];
+        leaf = stack_leaf[top];
+        pop = false;
+      }
+      if (LEAF_COUNT(leaf) > 0) {
+        break;
+      }
       Node node = read_node(JOIN_INDEX(index, LEAF_HIGH(leaf)));
       float t_0 = bvh_box_hit(node.lower_0, node.upper_0, slabs, hit.t);
       float t_1 = bvh_box_hit(node.lower_1, node.upper_1, slabs, hit.t);
@@ -98,14 +127,15 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
         stack_t[top] = t_far;
         top++;
       }
-      if (t_near < BVH_MISS) {
-        index = first_is_near ? node.first_0 : node.first_1;
-        leaf = first_is_near ? node.leaf_0 : node.leaf_1;
-        continue;
-      }
+      index = first_is_near ? node.first_0 : node.first_1;
+      leaf = first_is_near ? node.leaf_0 : node.leaf_1;
+      pop = t_near >= BVH_MISS;
+    }
+    if (done) {
+      break;
     }
 #ifdef HAS_INSTANCES
-    else if (LEAF_KIND(leaf) == KIND_INSTANCE) {
+    if (LEAF_KIND(leaf) == KIND_INSTANCE) {
       instance = JOIN_INDEX(index, LEAF_HIGH(leaf));
       instance_top = top;
       Instance entered = read_instance(instance);
@@ -117,42 +147,17 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
       continue;
     }
 #endif
-    else {
-      float t_before = hit.t;
-      primitive_leaf_hit(LEAF_KIND(leaf), JOIN_INDEX(index, LEAF_HIGH(leaf)), LEAF_COUNT(leaf), ray, hit);
-      if (hit.t < t_before) {
+    float t_before = hit.t;
+    primitive_leaf_hit(LEAF_KIND(leaf), JOIN_INDEX(index, LEAF_HIGH(leaf)), LEAF_COUNT(leaf), ray, hit);
+    if (hit.t < t_before) {
 #ifdef HAS_INSTANCES
-        hit.instance = instance;
+      hit.instance = instance;
 #endif
-        if (any_hit) {
-          break;
-        }
-      }
-    }
-    /* Take the next reference that is still nearer than the hit. */
-    bool found = false;
-    while (!found) {
-#ifdef HAS_INSTANCES
-      if (top == instance_top) {
-        hit.t /= scale;
-        scale = 1.0;
-        ray = world_ray;
-        slabs = bvh_slabs(ray);
-        instance = -1;
-        instance_top = -1;
-      }
-#endif
-      if (top == 0) {
+      if (any_hit) {
         break;
       }
-      top--;
-      found = stack_t[top] < hit.t;
     }
-    if (!found) {
-      break;
-    }
-    index = stack_index[top];
-    leaf = stack_leaf[top];
+    pop = true;
   }
 #ifdef HAS_INSTANCES
   hit.t /= scale; /* only when an any-hit ended inside an instance */

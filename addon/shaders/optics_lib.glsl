@@ -9,7 +9,7 @@ float optics_largest(vec3 color)
  * refracted ray's, and the reflectance is 1 at total internal reflection. (Born and Wolf 1.5.2.) */
 float optics_fresnel(float cos_i, float eta, out float cos_t)
 {
-  float k = 1.0 - eta * eta * (1.0 - cos_i * cos_i);
+  float k = (1.0 - eta) * (1.0 + eta) + eta * eta * cos_i * cos_i; /* 1 - (eta sin_i)^2 without its cancellation */
   cos_t = sqrt(max(k, 0.0));
   if (k <= 0.0) {
     return 1.0;

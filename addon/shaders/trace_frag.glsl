@@ -162,13 +162,15 @@ void main()
       }
       float cos_i = min(-dot(normal, ray.direction), 1.0);
       vec3 weight = path.weight;
+      bool transmits = optics_largest(material.transmit) > 0.0;
 #ifdef HAS_ABSORPTION
-      /* A ray that leaves a body has been inside it, even if it was not seen entering (the eye was inside). */
-      weight *= optics_absorb(entering ? medium_absorption(path.media) : material.absorption, hit.t);
+      /* A ray that leaves a body has been inside it, even if it was not seen entering (the eye was inside). The back of an
+       * opaque surface bounds no body. */
+      bool leaves = transmits && !entering;
+      weight *= optics_absorb(leaves ? material.absorption : medium_absorption(path.media), hit.t);
 #endif
       radiance += weight * material.glow;
 
-      bool transmits = optics_largest(material.transmit) > 0.0;
       ivec4 media_beyond = path.media;
       float eta = 1.0 / material.ior; /* a coat is on both sides of a surface that borders on no medium */
       if (transmits) {

@@ -28,8 +28,7 @@ float triangle_edge(vec3 a, vec3 b)
   return ordered ? area : -area;
 }
 
-/* Areas opposite to p0, p1, p2, of one sign where the ray meets the triangle; their sum's sign is that of
- * direction . normal. `along`: the vertices' distances along the ray. */
+/* Areas opposite to p0, p1, p2, of one sign where the ray meets the triangle; `along`: the vertices' distances along it. */
 vec3 triangle_areas(Triangle triangle, Ray ray, out vec3 along)
 {
   vec3 a = triangle_seen(triangle.p0, ray);
@@ -47,11 +46,14 @@ float triangle_hit(Triangle triangle, Ray ray, float t_max)
   vec3 areas = triangle_areas(triangle, ray, along);
   float lowest = min(areas.x, min(areas.y, areas.z));
   float highest = max(areas.x, max(areas.y, areas.z));
-  float sum = areas.x + areas.y + areas.z;
-  if ((lowest < 0.0 && highest > 0.0) || sum == 0.0 || (triangle.one_sided > 0.5 && sum > 0.0)) {
+  if (lowest < 0.0 && highest > 0.0) {
     return t_max;
   }
-  float t = dot(areas / sum, along);
+  float facing = dot(cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0), ray.direction);
+  if (facing == 0.0 || (triangle.one_sided > 0.5 && facing > 0.0)) {
+    return t_max;
+  }
+  float t = dot(areas / (areas.x + areas.y + areas.z), along);
   return (t > 0.0 && t < t_max) ? t : t_max;
 }
 

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import pytest
 
-from addon.render_engine import ConicRenderEngine
+from addon import render_engine, render_session
 
 ROOT = Path(__file__).resolve().parents[2]
 WIDTH, HEIGHT = 64, 48
@@ -139,7 +139,7 @@ def test_border_is_that_part_of_the_picture(scene, tmp_path, low, high, crop):
 def test_stereo_eyes_see_from_two_places(scene, tmp_path):
     scene.camera.data.type = "PERSP"
     stereo = scene.camera.data.stereo
-    stereo.convergence_mode, stereo.interocular_distance = "PARALLEL", 1.0
+    stereo.convergence_mode, stereo.pivot, stereo.interocular_distance = "PARALLEL", "CENTER", 1.0
     scene.render.use_multiview, scene.render.image_settings.views_format = True, "INDIVIDUAL"
     scene.render.filepath = str(tmp_path / "eyes.exr")
     bpy.ops.render.render(write_still=True)
@@ -185,8 +185,9 @@ def red_of(path, layer):
     raise AssertionError(f"{path} has no layer {layer}")
 
 
-def test_animation_renders_each_frame_and_warns_once(scene, tmp_path, monkeypatch):
-    told = reports(monkeypatch)
+def test_animation_renders_each_frame_and_warns_once(scene, tmp_path, watch):
+    told = []
+    watch(report=lambda level, message: told.append((*level, message)))
     sphere = bpy.data.objects["Sphere"]
     for frame, x in ((1, -1.0), (3, 1.0)):
         sphere.location.x = x
@@ -200,13 +201,28 @@ def test_animation_renders_each_frame_and_warns_once(scene, tmp_path, monkeypatc
     assert [level for level, message in told if "Area" in message] == ["WARNING"]
 
 
-def reports(monkeypatch):
-    """A list that fills with (level, message) of what the engine reports."""
-    told = []
-    monkeypatch.setattr(
-        ConicRenderEngine, "report", lambda self, level, message: told.append((*level, message)), raising=False
-    )
-    return told
+class Watched:
+    """A RenderEngine some of whose methods are replaced: Blender's own come before those that a class is given."""
+
+    def __init__(self, engine, methods):
+        self._engine, self._methods = engine, methods
+
+    def __getattr__(self, name):
+        return self._methods.get(name) or getattr(self._engine, name)
+
+
+@pytest.fixture
+def watch(monkeypatch):
+    """Call it with methods by name, to have them called in place of the engine's."""
+
+    def replace(**methods):
+        monkeypatch.setattr(
+            render_engine,
+            "render_layer",
+            lambda engine, depsgraph: render_session.render_layer(Watched(engine, methods), depsgraph),
+        )
+
+    return replace
 
 
 def test_scene_without_a_camera_is_an_error_and_no_picture(scene, tmp_path):
@@ -231,36 +247,33 @@ def test_empty_scene_is_sky(scene, tmp_path):
     np.testing.assert_allclose(rendered(scene, tmp_path)[..., :3], np.broadcast_to(SKY, (HEIGHT, WIDTH, 3)), rtol=1e-6)
 
 
-def test_progress_and_partial_results(scene, monkeypatch):
-    from addon import render_session
-
-    seen = {"progress": [], "stats": [], "results": 0}
-
-    def update_result(_self, _result):
-        seen["results"] += 1
+def test_progress_and_partial_results(scene, monkeypatch, watch):
+    seen = {"progress": [], "stats": [], "results": []}
 
     monkeypatch.setattr(render_session, "RESULT_SECONDS", 0.02)
     monkeypatch.setattr(render_session, "STEP_SECONDS", 0.001)
-    monkeypatch.setattr(ConicRenderEngine, "update_progress", lambda _, p: seen["progress"].append(p), raising=False)
-    monkeypatch.setattr(ConicRenderEngine, "update_stats", lambda _, *s: seen["stats"].append(s), raising=False)
-    monkeypatch.setattr(ConicRenderEngine, "update_result", update_result, raising=False)
-    scene.conic.samples = 64
+    watch(
+        update_progress=seen["progress"].append,
+        update_stats=lambda _, text: seen["stats"].append(text),
+        update_result=seen["results"].append,
+    )
+    scene.conic.samples = 1024
     bpy.ops.render.render()
-    assert seen["results"] >= 2
+    assert len(seen["results"]) >= 2
     assert seen["progress"] == sorted(seen["progress"]) and seen["progress"][-1] == 1.0
     assert len(seen["progress"]) > 10
-    assert any(text.startswith("Sample ") and text.endswith("/64 | 1 sphere") for _, text in seen["stats"])
+    assert any(text.startswith("Sample ") and text.endswith("/1024 | 1 sphere") for text in seen["stats"])
 
 
-def test_escape_ends_a_render_within_half_a_second(scene, monkeypatch):
+def test_escape_ends_a_render_within_half_a_second(scene, watch):
     pressed = []
 
-    def test_break(_self):
+    def stopped():
         if not pressed and time.monotonic() - started > 1.0:
             pressed.append(time.monotonic())
         return bool(pressed)
 
-    monkeypatch.setattr(ConicRenderEngine, "test_break", test_break, raising=False)
+    watch(test_break=stopped)
     scene.render.resolution_x, scene.render.resolution_y = 1920, 1080
     scene.conic.samples = 65536
     started = time.monotonic()

@@ -26,8 +26,8 @@ def fresnel(cos_i, n_from, n_to):
 class GlassBalls:
     """A float64 ray tracer for nothing but dielectric balls, none of which cross, under a white sky.
 
-    `balls`: (center, radius, index, absorption) each. A point's medium is the smallest ball that holds it: unlike in the
-    renderer, no book is kept of what a ray has entered.
+    `balls`: (center, radius, index, absorption) each. A point's medium is the smallest ball that holds it: unlike in
+    the renderer, no book is kept of what a ray has entered.
     """
 
     def __init__(self, balls):

@@ -6,10 +6,9 @@ from addon.engine import Camera, Geometry, Image, Instance, Light, Material, Sce
 
 
 def still_life(eye=(3.0, -5.0, 2.6), aspect=4.0 / 3.0):
-    """All kinds, flat and smooth triangles, an ellipsoid, mirror, glass, coat, absorption, an image, all kinds of lights."""
-    scene = Scene(
-        camera=Camera.look_at(eye, (0.1, 0.0, 0.6), angle=34.0, aspect=aspect), world=World((0.25, 0.35, 0.5))
-    )
+    """All kinds of shapes and lights, an ellipsoid, a smooth mesh, mirror, glass, coat, absorption and an image."""
+    camera = Camera.look_at(eye, (0.1, 0.0, 0.6), angle=34.0, aspect=aspect)
+    scene = Scene(camera=camera, world=World((0.25, 0.35, 0.5)))
     squares = np.indices((2, 2)).sum(axis=0) % 2
     board = scene.add_image(Image(np.repeat(squares[..., None] * 0.5 + 0.2, 3, axis=-1), interpolation="CLOSEST"))
     floor, red, mirror, glass, blue, syrup, yellow = (

@@ -76,7 +76,7 @@ def test_exr_is_linear_and_upright(conic, folder):
     rows, columns = np.nonzero(pixels[..., 2] < 0.9)
     assert rows.min() > 11  # bottom row first
     assert columns.mean() == pytest.approx(11.5)
-    # Where it faces the light, the sphere returns nearly its colour times the light's; the linear values keep their ratio.
+    # Where it faces the light, the sphere returns nearly its colour times the light's, whose ratio is kept.
     brightest = pixels[rows, columns].max(axis=0)
     assert 0.9 < brightest[0] <= 1.0
     np.testing.assert_allclose(brightest[:3] / brightest[0], (1.0, 0.5, 0.25), rtol=1e-5)
@@ -140,6 +140,17 @@ def test_stats(conic, folder):
     assert isinstance(stats["device"], str)
 
 
+def test_strict_takes_a_depth(conic, folder):
+    counts = []
+    for depth in (1, 3):
+        assert conic(
+            "scene.nff", "-o", "out.exr", "--strict", "--depth", depth, "--size", 20, 20, "--stats", "a.json"
+        ) == (0, [])
+        counts.append(json.loads((folder / "a.json").read_text())["rays"])
+    assert counts[0]["reflect"] == counts[0]["refract"] == 0
+    assert counts[0]["eye_hit"] == counts[1]["eye_hit"] and counts[0]["eye"] == 21 * 21
+
+
 def test_strict_is_512_with_one_row_and_column_of_rays_more(conic, folder):
     assert conic("scene.nff", "-o", "out.exr", "--strict", "--stats", "a.json") == (0, [])
     assert read_image(folder / "out.exr").shape == (512, 512, 4)
@@ -179,7 +190,7 @@ MISTAKES = {
     "samples huge": (["scene.nff", "-o", "out.png", "--samples", "9" * 30], "--samples: '9+' is no whole number"),
     "depth 0": (["scene.nff", "-o", "out.png", "--depth", "0"], "--depth: '0' is no whole number from 1"),
     "depth huge": (["scene.nff", "-o", "out.png", "--depth", "1000000"], "--depth: '1000000' is no whole number"),
-    "strict and samples": (["scene.nff", "-o", "out.png", "--strict", "--samples", "4"], "leave --samples and"),
+    "strict and samples": (["scene.nff", "-o", "out.png", "--strict", "--samples", "4"], "leave --samples out"),
 }
 
 

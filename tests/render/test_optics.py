@@ -234,6 +234,17 @@ def test_nested_media_against_float64(device):
     assert error.max() < 2e-2  # a ray that just passes the edge of a ball
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0], ids=["front", "back"])
+def test_opaque_surface_in_a_medium(device, side):
+    """The light of a disc in the middle of an absorbing ball is absorbed on its way out, seen from either side."""
+    absorption = np.array([0.5, 1.0, 1.5])
+    scene = Scene(world=World((0.0, 0.0, 0.0)), materials=[Material.glass(ior=1.0, absorption=absorption)])
+    scene.add_spheres((0.0, 0.0, 0.0), 1.0)
+    scene.add_discs((0.0, 0.0, 0.0), (0.0, side, 0.0), 0.5, scene.add_material(Material(diffuse=0.0, glow=1.0)))
+    value = along(device, scene, (0.0, -3.0, 0.0), (0.0, 1.0, 0.0), DEEP)
+    assert value == pytest.approx(np.exp(-absorption), abs=1e-5)
+
+
 def test_the_eye_in_glass(device):
     """From the middle of an absorbing ball: half its thickness, and the share that its surface lets out, though the ray
     was never seen entering."""
@@ -309,8 +320,8 @@ def test_counts_of_a_plate_over_a_floor(device):
     assert counted(device, scene, samples=3) == rays(36, 36, 0, 72, 36)
     assert counted(device, scene, corner_rays=True) == rays(20, 20, 0, 40, 20)
     assert counted(device, scene, max_depth=2) == rays(12, 12, 0, 12, 0)
-    # Half of it is reflected at the first side (12 mirror rays that miss), the other half passes (12); at the second side
-    # it is reflected (12) and refracted (12); depth 3 ends there, and 12 rays hit the floor.
+    # Half of it is reflected at the first side (12 mirror rays that miss), the other half passes (12); at the second
+    # side it is reflected (12) and refracted (12); depth 3 ends there, and 12 rays hit the floor.
     scene.materials[0] = Material(diffuse=0.0, reflect=0.5, transmit=0.5, fresnel=False)
     assert counted(device, scene, max_depth=3) == rays(12, 12, 24, 24, 12)
 

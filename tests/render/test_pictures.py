@@ -67,7 +67,7 @@ def test_reference_rasteriser(device):
 
 @pytest.mark.parametrize("build", PICTURES, ids=lambda build: build.__name__)
 def test_golden(device, regenerate, build):
-    """Alpha within a pixel, then the colours where both are opaque: the same but for rounding and a few pixels at edges."""
+    """Alpha within a pixel, then the colours where both are opaque: equal but for rounding and some pixels at edges."""
     if REFERENCE not in device.name:
         pytest.skip(f"golden pictures hold for {REFERENCE}; this is {device.name}")
     scene, settings = build()

@@ -87,7 +87,7 @@ def triangle(scene):
 
 
 def smooth_triangles(scene):
-    """A roof whose ridge is smoothed, and a triangle with three different normals; of length 1, as POV-Ray makes them."""
+    """A roof whose ridge is smoothed, and a triangle with different normals, of length 1 as POV-Ray makes them."""
     normals = [
         (0.0, -0.6, 1.0),
         (-0.6, 0.0, 1.0),
@@ -260,7 +260,7 @@ def test_nested_media(device):
 
 
 def test_constant_shares(device):
-    """The paper's colour class without Fresnel: constant shares of mirror and refraction, their sum at total reflection."""
+    """The paper's colour class without Fresnel: constant shares of mirror and refraction, both at total reflection."""
     scene = stage(Material(diffuse=0.0, reflect=0.2, transmit=0.8, fresnel=False, ior=1.5))
     glass_cylinder(scene)
     assert_same_picture(device, scene, "constant_shares")
@@ -315,12 +315,45 @@ def test_everything_in_parallel(device):
     assert_same_picture(device, scene, "everything_in_parallel")
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_crowd(device, seed):
+    """120 shapes of all kinds at random, so that the tree is deep: they cross each other, hence none is transparent."""
+    random = np.random.default_rng(seed)
+    scene = scene_of(
+        FLOOR, RED, Material.mirror((0.9, 0.9, 0.9)), Material.plastic((0.1, 0.3, 0.7)), target=(0, 0, 0.4)
+    )
+    scene.add_plane((0.0, 0.0, -0.9), (0.1, 0.0, 1.0))
+
+    def row(count=20):
+        low, high = (-1.6, -1.6, -0.6), (1.6, 1.6, 1.5)
+        return random.uniform(low, high, (count, 3)), random.uniform(0.05, 0.3, count), random.integers(0, 4, count)
+
+    center, radius, material = row()
+    scene.add_spheres(center, radius, material)
+    center, radius, material = row()
+    scene.add_discs(center, random.normal(size=(20, 3)), radius, material)
+    center, radius, material = row()
+    scene.add_cylinders(center, center + random.normal(0.0, 0.4, (20, 3)), radius / 2.0, material)
+    center, radius, material = row()
+    scene.add_cones(center, center + random.normal(0.0, 0.4, (20, 3)), radius, random.uniform(0.0, 0.2, 20), material)
+    center, radius, material = row(40)
+    scene.add_triangles(center, *(center + random.normal(0.0, 0.3, (2, 40, 3))), material)
+    assert_same_picture(device, scene, f"crowd_{seed}")
+
+
 def test_shifted_camera(device):
     """A window that is not centred on the view."""
     scene = everything()
     left, right, bottom, top = scene.camera.window
     scene.camera = replace(scene.camera, window=(left + 0.1, right + 0.1, bottom - 0.05, top - 0.05))
     assert_same_picture(device, scene, "shifted_camera")
+
+
+def test_povray_missing_is_an_error(monkeypatch):
+    """Nothing is skipped silently."""
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(FileNotFoundError, match="apt-get install povray"):
+        povray.render(scene_of(RED), *SIZE, SETTINGS)
 
 
 def test_what_povray_cannot_say_is_refused():

@@ -1,5 +1,7 @@
 """Rays counted under the databases' rules, beside the numbers that their author publishes for 513 x 513 corner rays."""
 
+from itertools import pairwise
+
 import pytest
 
 from addon.engine import Session, Settings
@@ -59,7 +61,7 @@ def test_other_sizes_of_a_family(device):
     rays = [count(device, FAMILIES["balls"](depth), 256) for depth in (2, 3, 4, 5)]
     assert {r["eye_hit"] for r in rays} == {257 * 257}
     reflect = [r["reflect"] for r in rays]
-    steps = [after - before for before, after in zip(reflect, reflect[1:], strict=False)]
+    steps = [after - before for before, after in pairwise(reflect)]
     assert steps[0] > steps[1] > steps[2] > 0
 
 

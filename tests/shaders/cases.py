@@ -15,7 +15,7 @@ SHAPES = {
     "disc": shapes.discs,
     "plane": shapes.planes,
     "triangle": shapes.triangles,
-    "triangle_sliver": lambda rng, n: shapes.triangles(rng, n, 1e-5),
+    "triangle_sliver": lambda rng, n: shapes.triangles(rng, n, 1e-4),
 }
 INSIDE_ONLY = {
     "sphere": lambda rng, n: shapes.spheres(rng, n, -1.0),

@@ -1,5 +1,7 @@
 """NFF files in and out: what is read, what is refused and in which words, polygons to triangles, round trips."""
 
+import os
+import threading
 import time
 
 import numpy as np
@@ -218,6 +220,17 @@ def test_a_file_that_cannot_be_read(tmp_path):
     for path in (tmp_path / "missing.nff", tmp_path):
         with pytest.raises(SceneError, match="cannot be read"):
             read_nff(path)
+
+
+def test_an_error_in_a_pipe_has_its_line(tmp_path):
+    """What comes out of a pipe cannot be read a second time to look for the line."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    writer = threading.Thread(target=pipe.write_text, args=(HEAD + "s 0 0 0 0\n",))
+    writer.start()
+    with pytest.raises(NffError, match="pipe:9: the sphere's radius is 0"):
+        read_nff(pipe)
+    writer.join()
 
 
 def test_large_file_is_read_in_seconds(tmp_path):
