@@ -3,6 +3,7 @@
 
 import bpy
 
+from . import viewport_display
 from .render_session import render_layer
 from .viewport_session import ViewportSession
 
@@ -38,4 +39,10 @@ class ConicRenderEngine(bpy.types.RenderEngine):
         self.viewport.draw(context, depsgraph)
 
 
-register, unregister = bpy.utils.register_classes_factory((ConicRenderEngine,))
+def register():
+    bpy.utils.register_class(ConicRenderEngine)
+
+
+def unregister():
+    bpy.utils.unregister_class(ConicRenderEngine)
+    viewport_display.unregister()

@@ -12,7 +12,7 @@ _SHADERS = Path(__file__).parent / "shaders"
 _VERTEX = "void main() { uv = 0.5 * pos + 0.5; gl_Position = vec4(pos, 0.0, 1.0); }"
 
 
-@cache  # for good: Blender may take a new shader for a dropped one that is still bound
+@cache  # until Conic is unregistered: Blender may take a new shader for a dropped one that is still bound
 def _shader():
     between = gpu.types.GPUStageInterfaceInfo("conic_display")
     between.smooth("VEC2", "uv")
@@ -58,4 +58,10 @@ class Display:
             shader.uniform_sampler("picture", texture)
             triangle.draw(shader)
         gpu.state.blend_set("NONE")
+        gpu.shader.unbind()
         self._drawn = textures, triangle
+
+
+def unregister():
+    """Give the shader back while Blender can still take it: after its end, Python would free it into nothing."""
+    _shader.cache_clear()

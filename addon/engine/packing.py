@@ -21,6 +21,8 @@ _INSTANCE = layout.KINDS.index("instance")
 #: a primitive rounds by. The shader adds the same for the ray's origin.
 _BOX_PADDING = 2.0**-21
 _BOX_PADDING_ABSOLUTE = 1e-20
+#: Volume of the box of an instance's unit axes below which float32 cannot invert its matrix.
+_SINGULAR = 1e-6
 
 
 @dataclass
@@ -109,6 +111,9 @@ def _build_tree(geometry, origin):
         rows = tree.order[tree.run[label] : tree.run[label + 1]] - start
         records[label] = part.take(rows).records()
         start += len(part)
+    for part in parts.values():
+        if part.material.min() < 0:
+            raise SceneError(f"geometry {geometry.name!r}: a {part.kind} uses material slot {int(part.material.min())}")
     return _Tree(tree, records, 1 + max(int(part.material.max()) for part in parts.values()))
 
 
@@ -183,11 +188,16 @@ class _Packer:
 
     def _check_matrices(self, matrices, placed):
         bad = ~np.isfinite(matrices).all(axis=(1, 2))
-        with np.errstate(invalid="ignore"):
-            bad |= np.linalg.det(np.where(np.isfinite(matrices), matrices, 0.0)[:, :3, :3]) == 0.0
+        linear = np.where(bad[:, None, None], 0.0, matrices[:, :3, :3])
+        # Relative to its columns' lengths, so that no scale is too small, but two columns along each other are found.
+        lengths = np.linalg.norm(linear, axis=1)
+        units = linear / np.where(lengths > 0.0, lengths, 1.0)[:, None, :]
+        bad |= np.abs(np.linalg.det(units)) < _SINGULAR
         if bad.any():
             which = int(np.argmax(bad)) - (len(matrices) - len(placed))
-            raise SceneError(f"instance {placed[which].name!r} has a scale of 0 or a matrix that is not finite")
+            raise SceneError(
+                f"instance {placed[which].name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
+            )
 
     def _material_block(self, instance):
         """Index of the material record of the instance's slot 0; instances with the same materials share a block."""
@@ -199,9 +209,7 @@ class _Packer:
             )
         block = tuple(instance.materials)
         if block not in self._blocks:
-            count = len(self.scene.materials)
-            if max(block) >= max(count, 1) or min(block) < 0:
-                raise SceneError(f"instance {instance.name!r} uses material {max(block)}, the scene has {count}")
+            self._check_slots(np.array(block), f"instance {instance.name!r}")
             if len(block) == 1:
                 return block[0]
             self._blocks[block] = len(self.materials)
@@ -257,17 +265,19 @@ class _Packer:
         if not self.scene.planes:
             return layout.PLANE.zeros(0), layout.PLANE_SURFACE.zeros(0)
         planes = Planes.concatenate(self.scene.planes).transformed(Similarity(np.eye(3), 1.0, -self.origin))
-        self._check_slots(planes.material, "plane")
+        self._check_slots(planes.material, "a plane")
         return planes.records()
 
     def _check_slots(self, material, what):
-        if len(material) and (material.max() >= len(self.materials) or material.min() < 0):
-            raise SceneError(f"a {what} uses material {int(material.max())}, the scene has {len(self.scene.materials)}")
+        count = max(len(self.scene.materials), 1)  # a scene without materials has the default one
+        bad = (material < 0) | (material >= count)
+        if bad.any():
+            raise SceneError(f"{what} uses material {int(material[np.argmax(bad)])}, the scene has {count}")
 
     def _materials(self):
         if len(self.scene.shapes):
             for _, part in self.scene.shapes.kinds():
-                self._check_slots(part.material, part.kind)
+                self._check_slots(part.material, f"a {part.kind}")
         records = layout.MATERIAL.zeros(len(self.materials))
         for name in records.dtype.names:
             if name != "unused":

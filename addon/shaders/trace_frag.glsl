@@ -87,6 +87,7 @@ void main()
   int light = -1; /* the light whose shadow ray is on its way; -1: the path's own ray */
   vec3 contribution = vec3(0.0);
   vec3 shadow_tint = vec3(1.0);
+  ivec4 shadow_media = medium_outside();
   int shadow_surfaces = 0;
   Ray shadow;
   float shadow_t_max = 0.0;
@@ -113,28 +114,28 @@ void main()
     bool path_ends = false;
 
     if (is_shadow) {
+      if (missed) {
+#ifdef HAS_ABSORPTION
+        shadow_tint *= optics_absorb(medium_absorption(shadow_media), limit);
+#endif
+        radiance += contribution * shadow_tint;
+      }
 #ifdef TINTED_SHADOWS
-      if (!missed) {
+      else if (shadow_surfaces < TINTED_SHADOW_SURFACES) {
         Surface surface = bvh_surface(hit, ray);
         Material material = material_at(surface.material, surface.uv);
-        bool leaving = dot(ray.direction, surface.geometric_normal) > 0.0;
+        bool leaves = dot(ray.direction, surface.geometric_normal) > 0.0;
         shadow_tint *= material.transmit;
-        if (leaving) {
-          shadow_tint *= optics_absorb(material.absorption, hit.t);
-        }
-        shadow_surfaces++;
-        if (optics_largest(shadow_tint) > frame.weight_cutoff && optics_largest(shadow_tint) > 0.0 &&
-            shadow_surfaces < TINTED_SHADOW_SURFACES) {
+#ifdef HAS_ABSORPTION
+        shadow_tint *= optics_absorb(leaves ? material.absorption : medium_absorption(shadow_media), hit.t);
+        shadow_media = leaves ? medium_leave(shadow_media, surface.material) : medium_enter(shadow_media, surface.material);
+#endif
+        if (optics_largest(shadow_tint) > frame.weight_cutoff) {
           shadow.origin = ray_spawn(surface, ray.direction);
           shadow_t_max -= hit.t;
+          shadow_surfaces++;
           continue;
         }
-        shadow_tint = vec3(0.0);
-      }
-      radiance += contribution * shadow_tint;
-#else
-      if (missed) {
-        radiance += contribution;
       }
 #endif
       light++;
@@ -224,6 +225,7 @@ void main()
       if (light < int(frame.light_count)) {
         TRACE_COUNT(shadows);
         shadow_tint = vec3(1.0);
+        shadow_media = lit.media;
         shadow_surfaces = 0;
         continue;
       }

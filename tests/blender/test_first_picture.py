@@ -92,6 +92,19 @@ def test_every_shape_is_exact_and_nothing_is_left_out(monkeypatch, tmp_path):
         assert np.allclose(made.pixels, read.pixels, atol=1e-3)
 
 
+def test_the_molecules_stand_as_they_are_and_not_mirrored():
+    atoms = molecule.read_pdb(molecule.find_1hpv())
+    first_picture.build_scene(atoms)
+    for prefix, part, scale in (
+        ("Drug ", atoms.where(atoms.residue == first_picture.DRUG), 0.1 * first_picture.DRUG_SIZE),
+        ("Chain ", atoms.where(np.isin(atoms.chain, ["A", "B"])), 0.1),
+    ):
+        placed = np.array([o.location for o in bpy.context.scene.collection.objects if o.name.startswith(prefix)])
+        linear_map = np.linalg.lstsq(part.position - part.position.mean(0), placed - placed.mean(0), rcond=None)[0]
+        assert np.allclose(linear_map @ linear_map.T, scale**2 * np.eye(3), atol=1e-5)
+        assert np.linalg.det(linear_map) > 0.0
+
+
 def test_the_picture_shows_what_it_should(picture):
     assert picture.pixels.mean() > 60.0 and picture.pixels.std() > 30.0
     check_mirror(picture)

@@ -185,6 +185,20 @@ def test_shadow_of_an_absorbing_plate(device, tinted):
     assert color == pytest.approx(through if tinted else 0.0, abs=1e-5)
 
 
+def test_light_within_an_absorbing_body(device):
+    """What lies between the light and its body's border absorbs, and so does an outer body on the way to an inner."""
+    inner, outer = (Material.glass(absorption=a) for a in ((0.1, 0.2, 0.4), (0.5, 0.2, 0.0)))
+    scene = Scene(world=World((0.0, 0.0, 0.0)), materials=[Material(diffuse=1.0), inner, outer])
+    scene.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0)
+    scene.add_spheres([(0.0, 0.0, 5.0), (0.0, 0.0, 5.0)], [1.0, 3.0], [1, 2])
+    scene.add_light(Light.constant((0.0, 0.0, 5.0)))
+    settings = Settings(max_depth=8, weight_cutoff=0.0, tinted_shadows=True)
+    color = along(device, scene, (0.0, 0.0, 0.5), (0.0, 0.0, -1.0), settings)
+    assert color == pytest.approx(
+        np.exp(-1.0 * np.array(inner.absorption) - 2.0 * np.array(outer.absorption)), rel=1e-5
+    )
+
+
 def test_transparent_film(device):
     """Alpha is 0 in the sky, the sky's colour is not there, and a body that does not bend light is looked through."""
     scene = Scene(world=World((1.0, 1.0, 1.0)), materials=[Material(diffuse=0.0, glow=0.5), Material.glass(ior=1.0)])

@@ -9,8 +9,8 @@ from .base import Column, Primitives, dot
 class Triangles(Primitives):
     """Triangles: p0, p1, p2 (n, 3), n0, n1, n2 (n, 3) vertex normals, uv0, uv1, uv2 (n, 2), material, one_sided (n,).
 
-    All normals zero (the default): a flat triangle. `one_sided`: seen only from where the vertices run
-    counter-clockwise.
+    Normals of any length count by their direction; all zero (the default): a flat triangle. `one_sided`: seen only from
+    where the vertices run counter-clockwise.
     """
 
     kind = "triangle"
@@ -40,7 +40,9 @@ class Triangles(Primitives):
         surface = self.surface_record.zeros(len(self))
         for name in ("p0", "p1", "p2", "one_sided"):
             hit[name] = getattr(self, name)
-        for name in ("n0", "n1", "n2", "uv1", "uv2", "material"):
+        for name in ("n0", "n1", "n2"):
+            surface[name] = _unit_or_zero(getattr(self, name))
+        for name in ("uv1", "uv2", "material"):
             surface[name] = getattr(self, name)
         surface["u0"], surface["v0"] = self.uv0[:, 0], self.uv0[:, 1]
         return hit, surface
@@ -71,7 +73,14 @@ class Triangles(Primitives):
         u, v = (value[:, None] for value in self._affine(point))
         w = 1.0 - u - v
         flat = np.cross(self.p1 - p0, self.p2 - p0)
-        smooth = w * self.n0 + u * self.n1 + v * self.n2
+        n0, n1, n2 = (_unit_or_zero(n) for n in (self.n0, self.n1, self.n2))
+        smooth = w * n0 + u * n1 + v * n2
         normal = np.where((smooth == 0.0).all(axis=-1, keepdims=True), flat, smooth)
         normal = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
         return normal, w * self.uv0 + u * self.uv1 + v * self.uv2
+
+
+def _unit_or_zero(vectors):
+    """Vectors (n, 3) at unit length; those without length stay zero."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.where(length > 0.0, length, 1.0)

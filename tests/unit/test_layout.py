@@ -1,0 +1,108 @@
+"""The table of records: the bytes that numpy writes are the floats that GLSL reads."""
+
+import re
+
+import numpy as np
+import pytest
+
+from addon.engine import layout
+from addon.engine.layout import Field, Record
+
+each_record = pytest.mark.parametrize("record", layout.RECORDS, ids=lambda record: record.name)
+
+
+def glsl_reads(record, floats):
+    """What `read_<record>` makes of the floats (4 * texels,), member by member, taken from the GLSL text itself."""
+    text = layout.glsl_reader(record)
+    struct = re.search(r"struct \w+ \{(.*?)\};", text, re.S).group(1)
+    members = re.findall(r"(\w+) (\w+);", struct)
+    arguments = re.search(rf"return {record.struct_name}\((.*)\);", text).group(1)
+    values = re.findall(r"(?:int\()?t(\d+)\.([xyzw]+)", arguments)
+    assert len(members) == len(values)
+    sizes = {"float": 1, "int": 1, "vec2": 2, "vec3": 3, "vec4": 4}
+    read = {}
+    for (kind, name), (texel, swizzle) in zip(members, values, strict=True):
+        assert len(swizzle) == sizes[kind], name
+        read[name] = [floats[4 * int(texel) + "xyzw".index(c)] for c in swizzle]
+    return read
+
+
+@each_record
+def test_bytes_are_read_as_they_were_written(record):
+    """Each float has a value of its own; what GLSL reads of each member is what numpy wrote to it."""
+    rows = record.zeros(3)
+    flat = rows.view(np.float32).reshape(3, -1)
+    assert flat.shape[1] == 4 * record.texels
+    flat[:] = np.arange(flat.size).reshape(flat.shape)
+    for row, floats in zip(rows, flat, strict=True):
+        read = glsl_reads(record, floats)
+        assert list(read) == list(record.dtype.names)
+        for name, values in read.items():
+            assert np.ravel(row[name]).tolist() == values, name
+
+
+@each_record
+def test_records_are_fetched_from_their_own_place(record):
+    text = layout.glsl_reader(record)
+    texels = [int(t) for t in re.findall(rf"fetch_{record.texture}\(texel \+ (\d+)\)", text)]
+    assert texels == list(range(record.texels))
+    assert f"index * {record.texels};" in text
+    first = f"{record.name}_first"
+    assert (f"frame.{first}" in text) == layout.shared(record)
+    if layout.shared(record):
+        assert first in layout.FRAME.dtype.names
+
+
+def test_the_frame_is_laid_out_as_std140_lays_it_out():
+    """Offsets by std140's rules: vec3 and vec4 begin at multiples of 16 bytes, vec2 of 8, a float may fill up a vec3."""
+    align = {"float": 4, "vec2": 8, "vec3": 16, "vec4": 16}
+    offset = 0
+    for field in layout.FRAME.fields:
+        assert field.type in align, f"{field.name}: an int would need its bits, not its value"
+        offset = -(-offset // align[field.type]) * align[field.type]
+        assert layout.FRAME.dtype.fields[field.name][1] == offset, field.name
+        offset += 4 * field.size
+    size = -(-offset // 16) * 16
+    assert layout.FRAME.dtype.itemsize == size == 16 * layout.FRAME.texels
+
+
+def test_no_name_is_given_twice():
+    assert len({record.name for record in layout.RECORDS}) == len(layout.RECORDS)
+    for record in (*layout.RECORDS, layout.FRAME):
+        names = [field.name for field in record.fields]
+        assert len(set(names)) == len(names), record.name
+
+
+def test_a_field_across_two_texels_is_refused():
+    with pytest.raises(ValueError, match="record broken: field b straddles"):
+        Record("broken", "", (Field("a", "vec2", ""), Field("b", "vec3", ""), Field("c", "vec3", "")))
+    with pytest.raises(ValueError, match="do not fill whole texels"):
+        Record("broken", "", (Field("a", "vec3", ""),))
+
+
+@pytest.mark.parametrize("index", [0, 1, 2**24 - 1, 2**24, 2**24 + 1, 2**31 - 1, 2**40 - 1])
+def test_indices_survive_float32(index):
+    low, high = layout.split_index(index)
+    stored = np.float32([low, high])
+    assert (stored == [low, high]).all(), "exact in float32"
+    assert int(stored[0]) + (int(stored[1]) << 24) == index
+
+
+def test_leaves_survive_float32():
+    kind, count, high = (
+        a.ravel() for a in np.meshgrid(range(len(layout.KINDS)), range(layout.MAX_LEAF_SIZE + 1), [0, 1, 127, 2**16 - 1])
+    )
+    leaf = layout.pack_leaf(kind, count, high)
+    assert leaf.max() < 2**24 and (leaf.astype(np.float32) == leaf).all()
+    text = layout.glsl_constants()
+    for macro, expected in (("LEAF_KIND", kind), ("LEAF_COUNT", count), ("LEAF_HIGH", high)):
+        body = re.search(rf"#define {macro}\(leaf\) (.*)", text).group(1)
+        assert (eval(body, {"leaf": leaf}) == expected).all(), macro
+    assert len(np.unique(leaf)) == len(leaf)
+
+
+def test_a_kind_s_number_is_its_label():
+    from addon.engine.primitives import BY_KIND
+
+    assert [cls.kind for cls in BY_KIND] == list(layout.KINDS[: len(BY_KIND)])
+    assert len(layout.KINDS) <= 1 << 3, "three bits in a leaf"

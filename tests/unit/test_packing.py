@@ -1,0 +1,275 @@
+"""From a scene to textures: where records lie, what is refused and how it is said. Nothing is drawn here."""
+
+import re
+
+import numpy as np
+import pytest
+
+from addon.engine import layout
+from addon.engine.errors import SceneError
+from addon.engine.packing import pack, scene_origin
+from addon.engine.primitives import Cylinders, Planes, Spheres, Triangles
+from addon.engine.scene import Camera, Geometry, Image, Instance, Light, Material, Scene, World
+
+LIMIT = 16384
+
+
+def scene_of(*primitives, eye=(0.0, -5.0, 0.0), materials=1, **rest):
+    scene = Scene(camera=Camera.look_at(eye, np.add(eye, (0, 1, 0))), materials=[Material()] * materials, **rest)
+    for part in primitives:
+        scene.add(part)
+    return scene
+
+
+def spheres(count, material=0, offset=0.0, seed=0):
+    center = np.random.default_rng(seed).uniform(-1, 1, (count, 3)) + offset
+    return Spheres(center=center, radius=np.linspace(0.01, 0.05, count) if count > 1 else [0.5], material=material)
+
+
+def records(packed, record, count):
+    """`count` records of a kind, read from the textures as the shader reads them."""
+    first = packed.frame.get(f"{record.name}_first", 0) if layout.shared(record) else 0
+    texels = packed.textures[record.texture].reshape(-1, 4)[first : first + count * record.texels]
+    return np.ascontiguousarray(texels).view(record.dtype).ravel()
+
+
+def leaves(packed):
+    """(kind, first, count) of every leaf that is reached from node 0, and through instances from there."""
+    nodes = packed.textures["nodes"].reshape(-1, 4)
+    nodes = np.ascontiguousarray(nodes[: len(nodes) // 4 * 4]).view(layout.NODE.dtype).ravel()
+    instances = packed.textures.get("instances")
+    todo, found, seen = [0], [], set()
+    while todo:
+        index = todo.pop()
+        assert index not in seen, "a node is reached twice"
+        seen.add(index)
+        for child in (0, 1):
+            leaf = int(nodes[f"leaf_{child}"][index])
+            first = int(nodes[f"first_{child}"][index]) + ((leaf >> 8) << 24)
+            kind, count = layout.KINDS[leaf & 7], (leaf >> 3) & 31
+            if count == 0:
+                if nodes[f"lower_{child}"][index][0] < 1e38:
+                    todo.append(first)
+            elif kind == "instance":
+                hit = instances.reshape(-1, 4)[4 * first : 4 * first + 4]
+                root = int(np.ascontiguousarray(hit).view(layout.INSTANCE.dtype).ravel()["root"][0])
+                if root not in seen:
+                    todo.append(root)
+            else:
+                found.append((kind, first, count))
+    return found
+
+
+def test_every_primitive_is_in_one_leaf():
+    """Of two geometries and the world's shapes, each kind's records lie in one texture, one geometry after the other."""
+    geometries = [Geometry(spheres(40), Cylinders(base=[[0, 0, 0]], apex=[[0, 0, 1]], radius=0.1)), Geometry(spheres(70))]
+    scene = scene_of(spheres(30))
+    scene.instances = [Instance(geometries[i], np.eye(4)) for i in (0, 1, 0)]
+    packed = pack(scene, LIMIT)
+    covered = {"sphere": np.zeros(140, int), "cylinder": np.zeros(1, int)}
+    for kind, first, count in leaves(packed):
+        covered[kind][first : first + count] += 1
+    assert all((c == 1).all() for c in covered.values())
+    radius = records(packed, layout.SPHERE, 140)["radius"]
+    expected = np.sort(np.concatenate([np.linspace(0.01, 0.05, n) for n in (30, 40, 70)]))
+    assert np.allclose(np.sort(radius), expected)
+    assert packed.statistics["primitives"] == {"sphere": 180, "cylinder": 2}
+
+
+def test_boxes_hold_what_is_below_them():
+    packed = pack(scene_of(spheres(200)), LIMIT)
+    nodes = packed.textures["nodes"].reshape(-1, 4)
+    root = np.ascontiguousarray(nodes[:4]).view(layout.NODE.dtype)
+    sphere = records(packed, layout.SPHERE, 200)
+    lower = np.minimum(root["lower_0"], root["lower_1"])[0]
+    upper = np.maximum(root["upper_0"], root["upper_1"])[0]
+    assert (lower < (sphere["center"] - sphere["radius"][:, None]).min(axis=0)).all()
+    assert (upper > (sphere["center"] + sphere["radius"][:, None]).max(axis=0)).all()
+
+
+def test_what_shares_a_texture_begins_where_the_frame_says():
+    scene = scene_of(spheres(2, material=1), materials=3)
+    scene.materials[1] = Material(diffuse=(0.1, 0.2, 0.3), ior=1.7)
+    scene.add(Planes(point=[[0, 0, -2.0], [0, 0, 7.0]], normal=[[0, 0, 2.0], [0, 0, -1.0]], material=[2, 1]))
+    scene.lights = [Light.point((1, 2, 3), 10.0), Light.sun((0, 0, 1), 2.0)]
+    scene.images = [Image(np.zeros((2, 3, 4))), Image(np.ones((5, 4, 4)), "CLOSEST", "CLIP")]
+    packed = pack(scene, LIMIT)
+    material = records(packed, layout.MATERIAL, 3)[1]
+    assert np.allclose(material["diffuse"], [0.1, 0.2, 0.3]) and material["ior"] == np.float32(1.7)
+    plane = records(packed, layout.PLANE, 2)
+    assert np.allclose(plane["normal"], [[0, 0, 1], [0, 0, -1]]) and np.allclose(plane["offset"], [2.0, 7.0])
+    assert records(packed, layout.PLANE_SURFACE, 2)["material"].tolist() == [2, 1]
+    light = records(packed, layout.LIGHT, 2)
+    assert light["kind"].tolist() == [0, 2] and light["position"].tolist() == [[1, 2, 3], [0, 0, 1]]
+    image = records(packed, layout.IMAGE, 2)[1]
+    assert (image["first"], image["width"], image["height"]) == (6, 4, 5)
+    assert (image["interpolation"], image["extension"]) == (0, 2)
+    assert packed.frame["plane_count"] == packed.frame["light_count"] == 2
+
+
+def test_planes_only_and_nothing_at_all():
+    packed = pack(scene_of(Planes(point=[[0, 0, 0]], normal=[[0, 0, 1]])), LIMIT)
+    assert packed.frame["root_count"] == 0 and packed.features == {"HAS_PLANE"}
+    packed = pack(scene_of(), LIMIT)
+    assert packed.frame["root_count"] == 0 and not packed.features
+    scene = scene_of()
+    scene.instances = [Instance(Geometry(name="empty"), np.eye(4))]
+    assert pack(scene, LIMIT).frame["root_count"] == 0
+
+
+def test_features_are_those_that_the_scene_uses():
+    scene = scene_of(spheres(3), world=World((1, 1, 1), 0), images=[Image(np.zeros((2, 2, 4)))])
+    assert pack(scene, LIMIT).features == {"HAS_SPHERE", "HAS_WORLD_IMAGE"}
+    scene.materials = [Material(diffuse_image=0, absorption=(0, 1, 0))]
+    scene.instances = [Instance(Geometry(Triangles(p0=[[0, 0, 0]], p1=[[1, 0, 0]], p2=[[0, 1, 0]])), np.eye(4))]
+    expected = {"HAS_SPHERE", "HAS_TRIANGLE", "HAS_WORLD_IMAGE", "HAS_IMAGES", "HAS_ABSORPTION", "HAS_INSTANCES"}
+    assert pack(scene, LIMIT).features == expected
+
+
+def test_instances_share_geometry_and_materials():
+    geometry = Geometry(Spheres(center=np.zeros((2, 3)), radius=1.0, material=[0, 1]))
+    scene = scene_of(materials=4)
+    matrix = np.diag([1.0, 2.0, -3.0, 1.0])
+    scene.instances = [Instance(geometry, matrix, (2, 3)), Instance(geometry, np.eye(4), (2, 3))]
+    packed = pack(scene, LIMIT)
+    assert len(records(packed, layout.SPHERE, 2)) == 2 and packed.textures["spheres"].shape[:2] == (1, 2)
+    first = records(packed, layout.INSTANCE, 2)["first_material"]
+    assert first[0] == first[1] == 4, "one block of materials in the order of the slots"
+    placed = records(packed, layout.INSTANCE_SURFACE, 2)
+    to_object = records(packed, layout.INSTANCE, 2)
+    for i in (0, 1):
+        there, back = (
+            np.stack([*(r[f"{name}_{axis}"][i] for axis in "xyz"), [0, 0, 0, 1]])
+            for r, name in ((placed, "to_world"), (to_object, "to_object"))
+        )
+        assert np.allclose(there @ back, np.eye(4), atol=1e-6)
+
+
+# The origin
+
+
+@pytest.mark.parametrize("away", [0.0, 1e3, 1e6, 1e9])
+def test_positions_are_relative_to_an_origin_near_the_camera(away):
+    """A million metres away the records are as exact as at 0."""
+    offset = np.array([away, -2.0 * away, away])
+    packed = pack(scene_of(spheres(50, offset=offset), eye=offset + [0, -5, 0]), LIMIT)
+    assert (packed.origin == 0.0).all() if away == 0.0 else np.abs(packed.origin - offset).max() < 40.0
+    sphere = records(packed, layout.SPHERE, 50)
+    exact = spheres(50, offset=offset)
+    back = sphere["center"].astype(np.float64) + packed.origin
+    order = np.argsort(sphere["radius"])
+    assert np.abs(back[order] - exact.center).max() < 4e-6
+
+
+def test_the_origin_stays_while_the_camera_moves_a_little():
+    first = scene_origin(scene_of(spheres(50, offset=1e6), eye=(1e6, 1e6 - 5, 1e6)))
+    for step in np.linspace(0, 1, 10):
+        assert (scene_origin(scene_of(spheres(50, offset=1e6), eye=(1e6 + step, 1e6 - 5, 1e6))) == first).all()
+
+
+def test_lights_planes_and_instances_move_with_the_origin():
+    offset = np.array([1e6, 0.0, 0.0])
+    scene = scene_of(spheres(5, offset=offset), eye=offset + [0, -5, 0])
+    scene.add(Planes(point=[offset + [0, 0, -1.0]], normal=[[1.0, 0, 0]]))
+    scene.lights = [Light.point(offset + [0, 0, 3.0], 1.0), Light.sun((0, 0, 1), 1.0)]
+    matrix = np.eye(4)
+    matrix[:3, 3] = offset + [0, 2.0, 0]
+    scene.instances = [Instance(Geometry(spheres(1)), matrix)]
+    packed = pack(scene, LIMIT)
+    light = records(packed, layout.LIGHT, 2)
+    assert np.allclose(light["position"][0], offset + [0, 0, 3.0] - packed.origin)
+    assert np.allclose(light["position"][1], [0, 0, 1]), "a direction has no place"
+    assert np.allclose(records(packed, layout.PLANE, 1)["offset"], packed.origin[0] - offset[0])
+    placed = records(packed, layout.INSTANCE_SURFACE, 2)
+    places = np.stack([placed[f"to_world_{axis}"][:, 3] for axis in "xyz"], axis=-1)
+    assert any(np.allclose(place, offset + [0, 2.0, 0] - packed.origin) for place in places)
+    assert any(np.allclose(place, 0.0) for place in places), "the world's shapes are moved themselves"
+
+
+# What is refused
+
+
+def refuse(scene, message, limit=LIMIT):
+    with pytest.raises(SceneError, match=re.escape(message)):
+        pack(scene, limit)
+
+
+def test_a_scene_without_a_camera():
+    refuse(Scene(), "the scene has no camera; add one")
+
+
+def test_too_many_for_a_texture_is_found_before_anything_is_uploaded():
+    message = "the scene needs 5000 texels of spheres, a texture of this device holds 4096; render it in parts"
+    refuse(scene_of(spheres(5000)), message, limit=1)
+
+
+def test_an_image_too_large_is_reduced_and_said_so():
+    picture = np.random.default_rng(0).random((100, 63, 4)).astype(np.float32)
+    scene = scene_of(images=[Image(picture, name="wood.png"), Image(np.ones((8, 8, 4)), name="small")])
+    packed = pack(scene, 1)
+    assert packed.warnings == ["image 'wood.png' of 63 x 100 is too large for this device and was reduced to 31 x 50"]
+    image = records(packed, layout.IMAGE, 2)
+    assert (image["width"].tolist(), image["height"].tolist()) == ([31, 8], [50, 8])
+    texels = packed.textures["images"].reshape(-1, 4)[: 31 * 50]
+    assert np.allclose(texels.mean(axis=0), picture.mean(axis=(0, 1)), atol=0.01)
+    assert np.allclose(texels[0], picture[:2, :2].mean(axis=(0, 1)), atol=1e-6)
+    assert not pack(scene, LIMIT).warnings
+
+
+FLAT = np.diag([1.0, 0.0, 1.0, 1.0])
+TURNED_FLAT = np.array([[1, 1, 0, 0], [2, 2, 0, 0], [0.1, 0.1, 1, 0], [0, 0, 0, 1.0]])
+ENDLESS = np.diag([1.0, np.inf, 1.0, 1.0])
+
+
+@pytest.mark.parametrize("matrix", [FLAT, TURNED_FLAT, ENDLESS, np.full((4, 4), np.nan)])
+@pytest.mark.parametrize("world", [True, False])
+def test_an_instance_without_volume_is_named(matrix, world):
+    scene = scene_of(*([spheres(3)] if world else []))
+    geometry = Geometry(spheres(1))
+    scene.instances = [Instance(geometry, np.eye(4), name="good"), Instance(geometry, matrix, name="bad")]
+    refuse(scene, "instance 'bad' has a scale of 0")
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
+def test_no_scale_is_too_small_or_large_for_an_instance(scale):
+    scene = scene_of()
+    scene.instances = [Instance(Geometry(spheres(1)), np.diag([scale, scale, 2 * scale, 1.0]))]
+    assert pack(scene, LIMIT).frame["root_count"] == 1
+
+
+@pytest.mark.parametrize("material", [-1, 2, 100])
+def test_a_material_that_is_not_there(material):
+    refuse(scene_of(Planes(point=[[0, 0, 0]], normal=[[0, 0, 1]], material=material), materials=2), "a plane uses material")
+    scene = scene_of(materials=2)
+    scene.instances = [Instance(Geometry(spheres(1)), np.eye(4), (material,), "pot")]
+    refuse(scene, f"instance 'pot' uses material {material}, the scene has 2")
+    if material >= 0:
+        refuse(scene_of(spheres(2, material), materials=2), f"a sphere uses material {material}, the scene has 2")
+
+
+def test_a_material_beyond_the_list_is_not_taken_for_an_instance_s_block():
+    """Blocks of instances' materials follow the scene's own; a shape may not reach them."""
+    two = Geometry(Spheres(center=np.zeros((2, 3)), radius=1.0, material=[0, 1]))
+    scene = scene_of(spheres(1, material=2), materials=2)
+    scene.instances = [Instance(two, np.eye(4), (1, 0))]
+    refuse(scene, "a sphere uses material 2, the scene has 2")
+
+
+def test_slots_without_material():
+    scene = scene_of()
+    scene.instances = [Instance(Geometry(spheres(2, [0, 3])), np.eye(4), (0, 0), "pot")]
+    refuse(scene, "instance 'pot' has 2 materials, its geometry uses slot 3")
+    scene.instances = [Instance(Geometry(spheres(1, -1), name="mesh"), np.eye(4))]
+    refuse(scene, "geometry 'mesh': a sphere uses material slot -1")
+
+
+def test_an_image_that_is_not_there():
+    refuse(scene_of(world=World((1, 1, 1), 0)), "the world uses image 0, the scene has 0")
+    scene = scene_of()
+    scene.materials = [Material(), Material(glow_image=1)]
+    refuse(scene, "material 1 uses image 1, the scene has 0")
+
+
+def test_a_light_that_is_nowhere():
+    scene = scene_of(lights=[Light.constant((np.nan, 0, 0))])
+    refuse(scene, "a light has a position or colour that is not finite")
