@@ -8,9 +8,7 @@ nor the viewport.
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty
 
-
-def tag_update(_properties, _context):
-    """Nothing to do: that there is a callback makes Blender tag the owner as changed."""
+from .property_update import tag_update
 
 
 SHADOWS = (
@@ -70,7 +68,7 @@ class ConicSceneSettings(bpy.types.PropertyGroup):
         description="Rays that contribute less than this share to a pixel are not followed. 0 follows all",
         default=1.0 / 512.0,
         min=0.0,
-        max=1.0,
+        max=0.999,
         soft_max=0.1,
         precision=4,
         step=0.1,

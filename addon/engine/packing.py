@@ -56,6 +56,7 @@ def pack(scene, max_texture_size):
     """
     if scene.camera is None:
         raise SceneError("the scene has no camera; add one")
+    _check_matrices(scene)
     started = time.perf_counter()
     origin = scene_origin(scene)
     geometries = _distinct_geometries(scene)
@@ -65,6 +66,21 @@ def pack(scene, max_texture_size):
     packed = packer.pack()
     packed.statistics["seconds"] = {"build": built}
     return packed
+
+
+def _check_matrices(scene):
+    """Raise SceneError where the camera or an instance has a matrix that is not finite or cannot be inverted."""
+    if not np.isfinite(np.asarray(scene.camera.matrix, np.float64)).all():
+        raise SceneError("the camera's matrix is not finite")
+    matrices = np.array([instance.matrix for instance in scene.instances], np.float64).reshape(-1, 4, 4)
+    bad = ~np.isfinite(matrices).all(axis=(1, 2))
+    linear = np.where(bad[:, None, None], 0.0, matrices[:, :3, :3])
+    # Relative to its columns' lengths, so that no scale is too small, but columns in one plane are found.
+    lengths = np.linalg.norm(linear, axis=1)
+    bad |= np.abs(np.linalg.det(linear / np.where(lengths > 0.0, lengths, 1.0)[:, None, :])) < _SINGULAR
+    if bad.any():
+        name = scene.instances[int(np.argmax(bad))].name
+        raise SceneError(f"instance {name!r} has a scale of 0, axes in one plane or a matrix that is not finite")
 
 
 def scene_origin(scene):
@@ -179,25 +195,11 @@ class _Packer:
             matrices[1:, :3, 3] -= self.origin
         else:
             matrices[:, :3, 3] -= self.origin
-        self._check_matrices(matrices, placed)
         which = np.array(which, np.int64)
         bounds = np.array([t.tree.bounds for t in self.trees], np.float64).reshape(-1, 2, 3)
         lower, upper = _moved_boxes(bounds[which], matrices)
         top = bvh.build(lower, upper, leaf_size=1)
         return self._instance_records(matrices[top.order], which[top.order], np.array(first)[top.order], top), top
-
-    def _check_matrices(self, matrices, placed):
-        bad = ~np.isfinite(matrices).all(axis=(1, 2))
-        linear = np.where(bad[:, None, None], 0.0, matrices[:, :3, :3])
-        # Relative to its columns' lengths, so that no scale is too small, but two columns along each other are found.
-        lengths = np.linalg.norm(linear, axis=1)
-        units = linear / np.where(lengths > 0.0, lengths, 1.0)[:, None, :]
-        bad |= np.abs(np.linalg.det(units)) < _SINGULAR
-        if bad.any():
-            which = int(np.argmax(bad)) - (len(matrices) - len(placed))
-            raise SceneError(
-                f"instance {placed[which].name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
-            )
 
     def _material_block(self, instance):
         """Index of the material record of the instance's slot 0; instances with the same materials share a block."""

@@ -8,7 +8,7 @@ import pytest
 from addon.engine import layout
 from addon.engine.errors import SceneError
 from addon.engine.packing import pack, scene_origin
-from addon.engine.primitives import Cylinders, Planes, Spheres, Triangles
+from addon.engine.primitives import Cylinders, Discs, Planes, Spheres, Triangles
 from addon.engine.scene import Camera, Geometry, Image, Instance, Light, Material, Scene, World
 
 LIMIT = 16384
@@ -30,13 +30,13 @@ def records(packed, record, count):
     """`count` records of a kind, read from the textures as the shader reads them."""
     first = packed.frame.get(f"{record.name}_first", 0) if layout.shared(record) else 0
     texels = packed.textures[record.texture].reshape(-1, 4)[first : first + count * record.texels]
-    return np.ascontiguousarray(texels).view(record.dtype).ravel()
+    return texels.reshape(-1).view(record.dtype)
 
 
 def leaves(packed):
     """(kind, first, count) of every leaf that is reached from node 0, and through instances from there."""
-    nodes = packed.textures["nodes"].reshape(-1, 4)
-    nodes = np.ascontiguousarray(nodes[: len(nodes) // 4 * 4]).view(layout.NODE.dtype).ravel()
+    nodes = packed.textures["nodes"].reshape(-1)
+    nodes = nodes[: len(nodes) // 16 * 16].view(layout.NODE.dtype)
     instances = packed.textures.get("instances")
     todo, found, seen = [0], [], set()
     while todo:
@@ -51,9 +51,9 @@ def leaves(packed):
                 if nodes[f"lower_{child}"][index][0] < 1e38:
                     todo.append(first)
             elif kind == "instance":
-                hit = instances.reshape(-1, 4)[4 * first : 4 * first + 4]
-                root = int(np.ascontiguousarray(hit).view(layout.INSTANCE.dtype).ravel()["root"][0])
-                if root not in seen:
+                hit = instances.reshape(-1)[16 * first : 16 * first + 16]
+                root = int(hit.view(layout.INSTANCE.dtype)["root"][0])
+                if root not in seen and root not in todo:
                     todo.append(root)
             else:
                 found.append((kind, first, count))
@@ -78,8 +78,7 @@ def test_every_primitive_is_in_one_leaf():
 
 def test_boxes_hold_what_is_below_them():
     packed = pack(scene_of(spheres(200)), LIMIT)
-    nodes = packed.textures["nodes"].reshape(-1, 4)
-    root = np.ascontiguousarray(nodes[:4]).view(layout.NODE.dtype)
+    root = packed.textures["nodes"].reshape(-1)[:16].view(layout.NODE.dtype)
     sphere = records(packed, layout.SPHERE, 200)
     lower = np.minimum(root["lower_0"], root["lower_1"])[0]
     upper = np.maximum(root["upper_0"], root["upper_1"])[0]
@@ -198,9 +197,17 @@ def test_a_scene_without_a_camera():
     refuse(Scene(), "the scene has no camera; add one")
 
 
+def test_a_camera_that_is_nowhere():
+    scene = scene_of(spheres(1))
+    scene.camera = Camera(np.full((4, 4), np.nan), (-1, 1, -1, 1))
+    refuse(scene, "the camera's matrix is not finite")
+
+
 def test_too_many_for_a_texture_is_found_before_anything_is_uploaded():
-    message = "the scene needs 5000 texels of spheres, a texture of this device holds 4096; render it in parts"
+    message = "texels of nodes, a texture of this device holds 4096; render it in parts or with fewer primitives"
     refuse(scene_of(spheres(5000)), message, limit=1)
+    disc = Discs(center=np.zeros((2500, 3)), normal=[[0, 0, 1]], radius=1.0)  # many to a leaf: few nodes
+    refuse(scene_of(disc), "the scene needs 5000 texels of discs", limit=1)
 
 
 def test_an_image_too_large_is_reduced_and_said_so():
