@@ -10,7 +10,6 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from .property_update import tag_update
 
-
 SHADOWS = (
     ("OPAQUE", "Opaque", "Whatever lies between a surface and a light blocks it, glass too"),
     ("TINTED", "Tinted", "Light passes straight through transparent bodies and takes on their color"),

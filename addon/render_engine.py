@@ -3,7 +3,8 @@
 
 import bpy
 
-from . import viewport_display
+from . import gpu_thread, viewport_display
+from .engine.devices import blender_gpu
 from .render_session import render_layer
 from .viewport_session import ViewportSession
 
@@ -14,7 +15,7 @@ class ConicRenderEngine(bpy.types.RenderEngine):
     bl_idname = "CONIC"
     bl_label = "Conic"
     bl_use_preview = True
-    bl_use_gpu_context = True
+    bl_use_gpu_context = bpy.app.background  # see gpu_thread
     bl_use_eevee_viewport = True  # Material Preview mode shows the stand-in meshes
     bl_use_shading_nodes_custom = False  # Blender's own shader nodes
 
@@ -41,8 +42,11 @@ class ConicRenderEngine(bpy.types.RenderEngine):
 
 def register():
     bpy.utils.register_class(ConicRenderEngine)
+    gpu_thread.register()
 
 
 def unregister():
     bpy.utils.unregister_class(ConicRenderEngine)
+    gpu_thread.unregister()
     viewport_display.unregister()
+    blender_gpu._PROGRAMS.clear()  # as the display shader: Python would free them after Blender's end

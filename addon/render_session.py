@@ -4,29 +4,49 @@
 import os
 import time
 
+import bpy
+import gpu
 import numpy as np
 
+from . import gpu_thread
 from .engine import ConicError, Session
+from .engine.devices.blender_gpu import BlenderDevice
 from .sync.camera import camera_of_render
 from .sync.scene_sync import sync_scene, sync_settings
 
-STEP_SECONDS = 0.1  # between two looks at whether the user wants out
+STEP_SECONDS = 0.1 if bpy.app.background else 0.04  # between two looks at whether the user wants out
 RESULT_SECONDS = 0.5  # between two showings of what is there so far
+
+
+class WindowDevice(BlenderDevice):
+    """Blender's GPU in the main thread, whose context is now that of one window, now of another.
+
+    A frame buffer belongs to a context (its textures do not): each draw and each reading makes a new one.
+    """
+
+    def draw(self, program, target, *arguments):
+        self._renew(target)
+        super().draw(program, target, *arguments)
+
+    def read(self, target, *arguments):
+        self._renew(target)
+        return super().read(target, *arguments)
+
+    def _renew(self, target):
+        target.framebuffer = gpu.types.GPUFrameBuffer(color_slots=target.colors)
 
 
 def new_device():
     """A device on Blender's GPU context, which must be active.
 
-    The environment variable CONIC_DEVICE=headless takes a context of its own instead, which needs moderngl;
-    it is there to compare the two. Raises DeviceError where there is no such device.
+    The environment variable CONIC_DEVICE=headless takes a context of its own instead, which needs moderngl; it is
+    there to compare the two. Raises DeviceError where there is no such device.
     """
     if os.environ.get("CONIC_DEVICE") == "headless":
         from .engine.devices.headless import HeadlessDevice
 
         return HeadlessDevice()
-    from .engine.devices.blender_gpu import BlenderDevice
-
-    return BlenderDevice()
+    return BlenderDevice() if bpy.app.background else WindowDevice()
 
 
 class Reporter:
@@ -66,6 +86,8 @@ def render_layer(engine, depsgraph):
     """
     try:
         LayerRender(engine, depsgraph).run()
+    except gpu_thread.StoppedError:
+        pass  # Blender knows
     except ConicError as error:
         engine.report({"ERROR"}, str(error))
 
@@ -89,21 +111,25 @@ class LayerRender:
         self.engine.active_view_set(self.views[0])
         scene = sync_scene(self.depsgraph, *self.size, engine=self.engine, report=self.report)
         self.shapes = _counted(scene.primitive_counts())
-        session = Session(new_device())
+        session = self.on_gpu(lambda: Session(new_device()))
         try:
             self.engine.update_stats("Conic", f"Building | {self.shapes}")
-            session.load(scene, self.settings)
+            self.on_gpu(session.load, scene, self.settings)
             for index, view in enumerate(self.views):
                 if not self.engine.test_break():
                     self.render_view(session, index, view)
         finally:
-            session.free()
+            self.on_gpu(session.free)
+
+    def on_gpu(self, function, *arguments):
+        """Call where Blender's GPU context is active."""
+        return gpu_thread.call(function, *arguments, stopped=self.engine.test_break)
 
     def render_view(self, session, index, view):
         """Render one view (an eye, where there are several), and show it as it grows."""
         self.engine.active_view_set(view)
         camera = camera_of_render(self.engine, self.depsgraph, *self.size)
-        session.start(*self.size, camera=camera, border=self.border)
+        self.on_gpu(lambda: session.start(*self.size, camera=camera, border=self.border))
         size = self.border[2:] if self.border else self.size
         # The place of a result is relative to the border.
         result = self.engine.begin_result(0, 0, *size, layer=self.depsgraph.view_layer.name, view=view)
@@ -118,7 +144,7 @@ class LayerRender:
     def draw(self, session, index, result):
         """Draw until done or stopped, with progress and, now and then, the picture so far."""
         shown = time.monotonic()
-        while not self.engine.test_break() and session.step(STEP_SECONDS):
+        while not self.engine.test_break() and self.on_gpu(session.step, STEP_SECONDS):
             self.engine.update_progress((index + session.progress) / len(self.views))
             if time.monotonic() - shown > RESULT_SECONDS:
                 sample = f"Sample {session.sample + 1}/{self.settings.samples}"
@@ -130,7 +156,7 @@ class LayerRender:
 
     def show(self, session, result):
         """Copy what is there so far to the render result."""
-        result.layers[0].passes["Combined"].rect.foreach_set(session.pixels().reshape(-1))
+        result.layers[0].passes["Combined"].rect.foreach_set(self.on_gpu(session.pixels).reshape(-1))
 
 
 def _counted(counts):

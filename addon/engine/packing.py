@@ -17,8 +17,8 @@ from .scene import EXTENSIONS, INTERPOLATIONS, Geometry, LightKind, Material
 
 _INSTANCE = layout.KINDS.index("instance")
 
-#: How much larger boxes are stored than they are, relative to the largest of their coordinates: what the intersection with
-#: a primitive rounds by. The shader adds the same for the ray's origin.
+#: How much larger boxes are stored than they are, relative to the largest of their coordinates: what the intersection
+#: with a primitive rounds by. The shader adds the same for the ray's origin.
 _BOX_PADDING = 2.0**-21
 _BOX_PADDING_ABSOLUTE = 1e-20
 #: Volume of the box of an instance's unit axes below which float32 cannot invert its matrix.

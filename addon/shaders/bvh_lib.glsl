@@ -63,6 +63,14 @@ Ray bvh_object_ray(Instance instance, Ray ray, out float scale)
 }
 #endif
 
+#ifdef HAS_INSTANCES
+/* Normals go with the transposed inverse; the length is that of 1 / stretch along the normal. */
+vec3 bvh_world_normal(Instance instance, vec3 n)
+{
+  return n.x * instance.to_object_x.xyz + n.y * instance.to_object_y.xyz + n.z * instance.to_object_z.xyz;
+}
+#endif
+
 /* The nearest hit in (0, t_max), or the first one found when `any_hit`; hit.kind is -1 when there is none. */
 Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
 {
@@ -165,35 +173,53 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
   return hit;
 }
 
+#ifdef HAS_INSTANCES
+/* The surface of a hit within an instance, from object space to world space. `seen`: as large as the numbers that the
+ * position was made of, in world space. */
+Surface bvh_placed_surface(Surface surface, int index, vec3 seen)
+{
+  Instance instance = read_instance(index);
+  InstanceSurface placed = read_instance_surface(index);
+  vec3 normal = surface.geometric_normal;
+  vec4 position = vec4(surface.position, 1.0);
+  surface.position =
+      vec3(dot(placed.to_world_x, position), dot(placed.to_world_y, position), dot(placed.to_world_z, position));
+  vec3 world_normal = bvh_world_normal(instance, normal);
+  float stretch = 1.0 / length(world_normal); /* of a length along the normal */
+  surface.geometric_normal = stretch * world_normal;
+  surface.shading_normal = normalize(bvh_world_normal(instance, surface.shading_normal));
+  /* The object's own error, the rounding of the ray on its way there, and of the position on its way back. */
+  vec4 here = abs(position);
+  vec4 there = vec4(seen, 1.0);
+  vec3 inwards =
+      vec3(dot(abs(instance.to_object_x), there), dot(abs(instance.to_object_y), there), dot(abs(instance.to_object_z), there));
+  vec3 outwards = vec3(dot(abs(placed.to_world_x), here), dot(abs(placed.to_world_y), here), dot(abs(placed.to_world_z), here));
+  surface.error = stretch * (surface.error + ray_flat_error(normal, inwards)) + ray_flat_error(surface.geometric_normal, outwards);
+  surface.material += instance.first_material;
+  return surface;
+}
+#endif
+
 /* The surface of a hit, in world space. */
 Surface bvh_surface(Hit hit, Ray world_ray)
 {
+  vec3 seen = world_ray.origin + hit.t * world_ray.direction;
+  Ray ray = world_ray;
 #ifdef HAS_INSTANCES
   if (hit.instance >= 0) {
     float scale;
-    Instance instance = read_instance(hit.instance);
-    InstanceSurface placed = read_instance_surface(hit.instance);
-    Ray ray = bvh_object_ray(instance, world_ray, scale);
+    ray = bvh_object_ray(read_instance(hit.instance), world_ray, scale);
     hit.t *= scale;
-    Surface surface = primitive_surface(hit, ray);
-    /* Normals go with the transposed inverse. */
-    vec3 n = surface.geometric_normal;
-    surface.geometric_normal =
-        normalize(n.x * instance.to_object_x.xyz + n.y * instance.to_object_y.xyz + n.z * instance.to_object_z.xyz);
-    n = surface.shading_normal;
-    surface.shading_normal =
-        normalize(n.x * instance.to_object_x.xyz + n.y * instance.to_object_y.xyz + n.z * instance.to_object_z.xyz);
-    vec4 position = vec4(surface.position, 1.0);
-    surface.position =
-        vec3(dot(placed.to_world_x, position), dot(placed.to_world_y, position), dot(placed.to_world_z, position));
-    /* The object's own error, stretched at most by the longest row, and the rounding of this transform itself. */
-    float stretch = sqrt(dot(placed.to_world_x.xyz, placed.to_world_x.xyz) + dot(placed.to_world_y.xyz, placed.to_world_y.xyz) +
-                         dot(placed.to_world_z.xyz, placed.to_world_z.xyz));
-    vec3 moved = abs(vec3(placed.to_world_x.w, placed.to_world_y.w, placed.to_world_z.w));
-    surface.error = 2.0 * (surface.error * stretch + ray_error(moved, 0.0));
-    surface.material += instance.first_material;
-    return surface;
   }
 #endif
-  return primitive_surface(hit, world_ray);
+  Surface surface = primitive_surface(hit, ray);
+#ifdef HAS_INSTANCES
+  if (hit.instance >= 0) {
+    surface = bvh_placed_surface(surface, hit.instance, abs(seen));
+  }
+#endif
+  if (primitive_is_flat(hit.kind)) { /* along a floor that reaches far its coordinates are coarse: what was seen is finer */
+    surface.position = seen + dot(surface.geometric_normal, surface.position - seen) * surface.geometric_normal;
+  }
+  return surface;
 }

@@ -78,6 +78,11 @@ void primitive_planes_hit(int count, Ray ray, inout Hit hit)
 #endif
 }
 
+bool primitive_is_flat(int kind)
+{
+  return kind == KIND_TRIANGLE || kind == KIND_DISC || kind == KIND_PLANE;
+}
+
 /* The surface at a hit, in the space of the ray that made it. */
 Surface primitive_surface(Hit hit, Ray ray)
 {

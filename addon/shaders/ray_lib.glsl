@@ -12,7 +12,7 @@ struct Surface {
   vec3 shading_normal;   /* unit, on the side of the geometric normal */
   vec2 uv;
   int material;
-  float error; /* bound of the rounding error of position, an absolute length */
+  float error; /* bound of the rounding error of position across the surface, an absolute length */
 };
 
 /* A position that is put on its surface again is wrong by a few roundings of the numbers that it was made of; 2^-18 is 32
@@ -23,6 +23,13 @@ float ray_error(vec3 position, float extent)
 {
   vec3 size = abs(position);
   return RAY_RELATIVE_ERROR * (max(size.x, max(size.y, size.z)) + extent);
+}
+
+/* The same across a plane: what its normal sees of coordinates of this size. A floor is as exact as its height, however far
+ * it reaches. */
+float ray_flat_error(vec3 normal, vec3 size)
+{
+  return RAY_RELATIVE_ERROR * dot(abs(normal), abs(size));
 }
 
 /* Origin of a ray that leaves a surface towards `direction`: moved off along the normal, by no more than rounding asks for

@@ -38,22 +38,36 @@ vec3 triangle_areas(Triangle triangle, Ray ray, out vec3 along)
   return vec3(triangle_edge(b, c), triangle_edge(c, a), triangle_edge(a, b));
 }
 
-/* Nearest t in (0, t_max), else t_max: the weighted mean of the vertices' distances. Unlike the distance from the plane,
- * which a sliver's normal hardly tells, it never leaves the triangle. */
+/* How many roundings of the vertices' coordinates the plane's equation makes of each, and the edges' cross product: many for
+ * a sliver, whose normal its rounded edges hardly tell. */
+vec3 triangle_spread(vec3 e1, vec3 e2)
+{
+  return abs(cross(e1, e2)) + abs(e1.yzx * e2.zxy) + abs(e1.zxy * e2.yzx);
+}
+
+/* Nearest t in (0, t_max), else t_max. Of the distance from the plane and the weighted mean of the vertices' distances it is
+ * the one that rounding harms less: the plane's for a large floor, the mean's for a sliver. */
 float triangle_hit(Triangle triangle, Ray ray, float t_max)
 {
   vec3 along;
   vec3 areas = triangle_areas(triangle, ray, along);
   float lowest = min(areas.x, min(areas.y, areas.z));
   float highest = max(areas.x, max(areas.y, areas.z));
-  if (lowest < 0.0 && highest > 0.0) {
+  float sum = areas.x + areas.y + areas.z;
+  if ((lowest < 0.0 && highest > 0.0) || sum == 0.0 || (triangle.one_sided > 0.5 && sum > 0.0)) {
     return t_max;
   }
-  float facing = dot(cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0), ray.direction);
-  if (facing == 0.0 || (triangle.one_sided > 0.5 && facing > 0.0)) {
+  vec3 e1 = triangle.p1 - triangle.p0;
+  vec3 e2 = triangle.p2 - triangle.p0;
+  vec3 to_plane = triangle.p0 - ray.origin;
+  vec3 normal = cross(e1, e2);
+  float facing = dot(normal, ray.direction);
+  if (facing == 0.0) {
     return t_max;
   }
-  float t = dot(areas / (areas.x + areas.y + areas.z), along);
+  vec3 reach = abs(along);
+  bool by_plane = dot(triangle_spread(e1, e2), abs(to_plane)) < max(reach.x, max(reach.y, reach.z)) * abs(facing);
+  float t = by_plane ? dot(normal, to_plane) / facing : dot(areas / sum, along);
   return (t > 0.0 && t < t_max) ? t : t_max;
 }
 
@@ -63,7 +77,11 @@ Surface triangle_surface(Triangle triangle, TriangleSurface info, Ray ray, float
   vec3 areas = triangle_areas(triangle, ray, along);
   vec3 weights = areas / (areas.x + areas.y + areas.z);
   vec3 position = weights.x * triangle.p0 + weights.y * triangle.p1 + weights.z * triangle.p2;
-  vec3 normal = normalize(cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0));
+  vec3 e1 = triangle.p1 - triangle.p0;
+  vec3 e2 = triangle.p2 - triangle.p0;
+  vec3 normal = cross(e1, e2);
+  float area = length(normal);
+  normal /= area;
   vec3 smooth_normal = weights.x * info.n0 + weights.y * info.n1 + weights.z * info.n2;
   float size = length(smooth_normal);
   vec3 shading_normal = size > 0.0 ? smooth_normal / size : normal;
@@ -73,5 +91,6 @@ Surface triangle_surface(Triangle triangle, TriangleSurface info, Ray ray, float
   }
   vec2 uv = weights.x * vec2(info.u0, info.v0) + weights.y * info.uv1 + weights.z * info.uv2;
   vec3 extent = max(abs(triangle.p0), max(abs(triangle.p1), abs(triangle.p2)));
-  return Surface(position, normal, shading_normal, uv, info.material, ray_error(extent, 0.0));
+  return Surface(position, normal, shading_normal, uv, info.material,
+                 min(ray_flat_error(triangle_spread(e1, e2) / area, extent), ray_error(extent, 0.0)));
 }

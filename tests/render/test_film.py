@@ -5,7 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine import Camera, Geometry, LightKind, Material, Scene, Session, Settings, World, render
+from addon.engine import (
+    Camera,
+    Geometry,
+    Instance,
+    Light,
+    LightKind,
+    Material,
+    Scene,
+    Session,
+    Settings,
+    Triangles,
+    World,
+    render,
+)
 from addon.engine.primitives.base import Similarity
 
 from .compare import psnr, save_difference
@@ -55,6 +68,50 @@ def test_scale_and_place_do_not_matter(device, scale, offset):
     ratio = psnr(pixels[..., :3], expected[..., :3], np.ones(pixels.shape[:2], bool))
     typical = np.quantile(np.abs(pixels - expected), 0.98)
     assert ratio > 40.0 and typical < 1e-3, save_difference(f"scale_{scale:g}_{offset[0]:g}", pixels, expected)
+
+
+def small_things():
+    """Shapes of a tenth of a unit that touch the ground at z = 0, which is to be added; two lamps."""
+    scene = Scene(world=World((0.2, 0.3, 0.4)), materials=[Material(diffuse=0.8), Material(diffuse=(0.8, 0.3, 0.2))])
+    scene.camera = Camera.look_at((0.3, -0.8, 0.35), (0.0, 0.0, 0.05), angle=30.0, aspect=4 / 3)
+    scene.add_spheres([(0.0, 0.0, 0.05), (0.13, 0.02, 0.03)], [0.05, 0.03], 1)
+    scene.add_cones((-0.12, 0.0, 0.0), (-0.12, 0.0, 0.1), 0.04, material=1, caps=False)
+    scene.add_light(Light.constant((1.0, -0.7, 1.5)))
+    scene.add_light(Light.sun((-1.0, -0.3, 0.4), 1.0))
+    return scene
+
+
+def square(half, height=0.0):
+    """Two triangles from -half to half at a height."""
+    a, b, c, d = ((x * half, y * half, height) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
+    return Triangles(p0=[a, a], p1=[b, c], p2=[c, d])
+
+
+def disc_floor(scene, half):
+    scene.add_discs((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), half)
+
+
+def triangle_floor(scene, half):
+    scene.add(square(half))
+
+
+def stretched_floor(scene, half):
+    """A unit square below its origin, stretched and lifted."""
+    matrix = np.diag([half, half, 3.0, 1.0])
+    matrix[2, 3] = 0.75
+    scene.instances.append(Instance(Geometry(square(1.0, -0.25)), matrix))
+
+
+@pytest.mark.parametrize("half", [10.0, 1e3, 1e4])
+@pytest.mark.parametrize("floor", [disc_floor, triangle_floor, stretched_floor])
+def test_large_floor_is_as_exact_as_a_plane(device, floor, half):
+    """Small things throw shadows right up to where they touch a floor that reaches far."""
+    expected, scene = small_things(), small_things()
+    expected.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    floor(scene, half)
+    wanted, pixels = (render(each, *SIZE, SETTINGS, device=device).pixels for each in (expected, scene))
+    ground = wanted[..., :3].max(axis=-1) > 0.0
+    assert psnr(pixels[..., :3], wanted[..., :3], ground) > 60.0, save_difference(f"{floor.__name__}", pixels, wanted)
 
 
 def test_samples_converge(device):

@@ -65,6 +65,7 @@ def new_materials(scene, count):
 
 
 def slots(part, start):
+    """The part with the material slots from `start` on, one a row."""
     return part._with({"material": np.arange(start, start + len(part), dtype=np.int32)})
 
 
@@ -120,7 +121,7 @@ def random_affine(rng):
 
 
 def mixed(rng, count, instances=0):
-    """A scene of `count` primitives in world space and as many again in each of some instanced geometries, with its oracle."""
+    """A scene of `count` primitives in world space and a quarter of that in a geometry with instances; its oracle."""
     scene, oracle = empty_scene(), Oracle()
     for part in parts(rng, count) if count else ():
         part = numbered(scene, part)

@@ -14,8 +14,7 @@ ROUNDOFF = 2.0**-24
 #: GLSL's answer is the exact one for a ray and a primitive moved by at most this many roundings of the lengths that it
 #: was computed from: about one for each operation between the inputs and the roots.
 BACKWARD_ROUNDINGS = 16.0
-#: A triangle is decided by its edges, each with an error of its own; where a sliver is seen edge-on, two edges that move
-#: apart move their vertex far along both.
+#: Where a sliver is seen edge-on, its vertices' roundings turn its plane, and move the hit far along it.
 SLIVER_ROUNDINGS = 64.0
 
 
@@ -69,7 +68,10 @@ CONE_FORMS = {
     "truncated": lambda rng, n: (log_uniform(rng, 0.1, 10.0, n), log_uniform(rng, 0.1, 10.0, n)),
     "needle": lambda rng, n: (log_uniform(rng, 1e-4, 1e-2, n), np.zeros(n)),
     "flat": lambda rng, n: (log_uniform(rng, 1e2, 1e4, n), np.zeros(n)),
-    "nearly_cylindrical": lambda rng, n: (np.ones(n), 1.0 + rng.uniform(-1.0, 1.0, n) * log_uniform(rng, 1e-7, 1e-2, n)),
+    "nearly_cylindrical": lambda rng, n: (
+        np.ones(n),
+        1.0 + rng.uniform(-1.0, 1.0, n) * log_uniform(rng, 1e-7, 1e-2, n),
+    ),
 }
 
 
@@ -101,9 +103,7 @@ def planes(rng, n):
     """Planes whose equation is exact in float32: the reference takes W from the point."""
     size, point = placed(rng, n)
     normal = unit_vectors(rng, n)
-    return Planes(
-        point=point, normal=normal, meridian=unit_vectors(rng, n), tile=size * log_uniform(rng, 0.1, 10.0, n)
-    )
+    return Planes(point=point, normal=normal, meridian=unit_vectors(rng, n), tile=size * log_uniform(rng, 0.1, 10.0, n))
 
 
 def triangles(rng, n, sliver=1.0, one_sided=0):
@@ -129,7 +129,6 @@ def exactly(primitives):
     hit, surface = primitives.records()
     hit = {name: hit[name].astype(np.float64) for name in hit.dtype.names}
     values = {column.name: getattr(primitives, column.name) for column in primitives.columns}
-    values |= {name: values[name] for name in values}
     for name in ("meridian", "n0", "n1", "n2", "uv1", "uv2", "uv_transform"):
         if name in surface.dtype.names:
             values[name] = surface[name].astype(np.float64)
@@ -278,7 +277,7 @@ def describe(rows, primitives, origin, direction, t, exact):
 
 
 def signed_distance(primitives, point):
-    """Distance (n,) of points from the surfaces, endless where they have an edge; negative inside or below the normal."""
+    """Distance (n,) of points from the surfaces without their edges; negative inside or below the normal."""
     p = {c.name: np.asarray(getattr(primitives, c.name), np.float64) for c in primitives.columns}
     if primitives.kind == "sphere":
         return np.linalg.norm(point - p["center"], axis=-1) - np.abs(p["radius"])
@@ -295,7 +294,7 @@ def signed_distance(primitives, point):
 
 
 def axis_coordinates(primitives, point):
-    """Height over the base, distance from the axis, and the whole height, of points about cylinders or cones: (n,) each."""
+    """Height over the base, distance from the axis, and the whole height, of points about cylinders or cones."""
     axis = primitives.apex - primitives.base
     length = np.linalg.norm(axis, axis=-1)
     height = np.sum((point - primitives.base) * axis, axis=-1) / length

@@ -147,7 +147,9 @@ def test_the_sky_s_mapping(device):
     named = np.array([[1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1], [1, 0, 1]]) / [[1]] * 1.0
     picture = np.random.default_rng(2).random((8, 16, 4)).astype(np.float32)
     _, sky, _ = sample(device, [picture], "CLOSEST", "REPEAT", np.zeros(6), np.zeros((6, 2)), shapes.normalized(named))
-    assert np.allclose(sky[:, :2], [[0.5, 0.5], [0.25, 0.5], [0.75, 0.5], [0.5, 1.0], [0.5, 0.0], [0.5, 0.75]], atol=1e-6)
+    assert np.allclose(
+        sky[:, :2], [[0.5, 0.5], [0.25, 0.5], [0.75, 0.5], [0.5, 1.0], [0.5, 0.0], [0.5, 0.75]], atol=1e-6
+    )
     directions = shapes.unit_vectors(np.random.default_rng(3), 5000)
     uv = np.stack(
         [0.5 - np.arctan2(directions[:, 1], directions[:, 0]) / (2 * np.pi), np.arcsin(directions[:, 2]) / np.pi + 0.5],

@@ -1,5 +1,5 @@
-"""The float64 reference itself, by invariants, hand-computed cases and finite differences, so that it shares no error with
-the GLSL that it judges."""
+"""The float64 reference itself, by invariants, hand-computed cases and finite differences, so that it shares no error
+with the GLSL that it judges."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,9 @@ def test_hits_lie_on_the_shape_and_nothing_lies_before_them(shape):
     _, extent = shapes.middle_and_extent(primitives)
     hit = np.isfinite(t)
     rows, end = primitives.take(hit), np.where(hit, t, np.linalg.norm(origin, axis=-1) * 2 + 20.0 * extent)
-    assert on_primitive(rows, (origin + np.where(hit, t, 0)[:, None] * direction)[hit], 1e-9 * reach(primitives)[hit]).all()
+    assert on_primitive(
+        rows, (origin + np.where(hit, t, 0)[:, None] * direction)[hit], 1e-9 * reach(primitives)[hit]
+    ).all()
     steps = np.linspace(0.0, 1.0, 200)[:-1]
     before = None
     for step in steps:
@@ -97,7 +99,8 @@ def test_normals_are_the_gradient_of_the_distance(shape):
     assert np.allclose(np.linalg.norm(normal, axis=-1), 1.0, atol=1e-12)
     step = (1e-6 * shapes.sharpest_radius(rows, point))[:, None]
     gradient = [
-        (shapes.signed_distance(rows, point + step * e) - shapes.signed_distance(rows, point - step * e)) / (2 * step[:, 0])
+        (shapes.signed_distance(rows, point + step * e) - shapes.signed_distance(rows, point - step * e))
+        / (2 * step[:, 0])
         for e in np.eye(3)
     ]
     exact = 1e-16 * reach(rows) / step[:, 0] < 1e-6

@@ -12,7 +12,7 @@ SIZE = 96
 
 
 def everything(scale=1.0, offset=(0.0, 0.0, 0.0)):
-    """All kinds of shapes, a mirror, glass, an ellipsoid and a mesh on a plane, of about 4 `scale` across at `offset`."""
+    """All kinds of shapes, a mirror, glass, an ellipsoid and a mesh on a plane, 4 `scale` across at `offset`."""
     at = np.asarray(offset, np.float64)
 
     def place(*point):

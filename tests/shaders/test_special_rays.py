@@ -31,9 +31,7 @@ def test_axis_parallel_rays_at_a_sphere(device, scale):
 def test_rays_along_the_axis_of_a_cylinder_miss_its_side(device, scale):
     rng = np.random.default_rng(0)
     axis = np.concatenate([AXES, shapes.unit_vectors(rng, 2000)])
-    cylinders = shapes.exactly(
-        Cylinders(base=-axis * scale, apex=axis * scale, radius=np.full(len(axis), 0.5 * scale))
-    )
+    cylinders = shapes.exactly(Cylinders(base=-axis * scale, apex=axis * scale, radius=np.full(len(axis), 0.5 * scale)))
     direction = shapes.single(axis)
     for offset in (0.0, 0.4, 0.6):
         across = np.cross(axis, shapes.unit_vectors(rng, len(axis)))
@@ -120,7 +118,7 @@ def test_the_edges_and_vertices_of_a_triangle(device):
 
 
 def test_the_paper_s_uv_at_named_points(device):
-    """Sphere (6): u = phi / 2 pi from e0 towards e1 = e2 x e0, v = 1 at the pole. Cylinder (10) and cone (13): v = z / l."""
+    """Sphere (6): u = phi / 2 pi from e0 to e1 = e2 x e0, v = 1 at the pole. Cylinder (10), cone (13): v = z / l."""
     directions = shapes.normalized(np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1.0]]))
     expected = np.array([[0, 0.5], [0.25, 0.5], [0.5, 0.5], [0.75, 0.5], [0, 1], [0, 0]])
     hits = one(device, Spheres(center=[[0, 0, 0]], radius=[2.0]), 5.0 * directions, -directions)

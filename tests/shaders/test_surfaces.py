@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from . import harness, shapes
-from .cases import CONVEX, FLAT, SHAPES, each_seed, each_shape, make
+from .cases import CONVEX, FLAT, each_seed, each_shape, make
 from .shapes import ROUNDOFF
 
 #: Roundings between a point on a surface and its normal and uv; a half of the product's bound on positions.
@@ -29,7 +29,7 @@ def coordinates(primitives):
 @each_seed
 @each_shape
 def test_position_lies_on_the_surface(device, shape, seed):
-    primitives, origin, direction, hits, _ = hit_pairs(device, shape, seed)
+    primitives, _, _, hits, _ = hit_pairs(device, shape, seed)
     distance = np.abs(shapes.signed_distance(primitives, hits.position))
     size = np.linalg.norm(hits.position, axis=-1) if shape == "plane" else 0.0
     assert (distance <= hits.error / 4.0).all(), (distance / hits.error).max()
@@ -64,7 +64,7 @@ def seen_aspect(primitives, direction):
 @each_seed
 @each_shape
 def test_normal_and_uv_as_the_reference(device, shape, seed):
-    primitives, origin, direction, hits, _ = hit_pairs(device, shape, seed)
+    primitives, origin, _, hits, _ = hit_pairs(device, shape, seed)
     normal, uv = primitives.reference_surface(hits.position.astype(np.float64))
     reach = np.linalg.norm(hits.position - origin, axis=-1) + coordinates(primitives)
     sharpest = shapes.sharpest_radius(primitives, hits.position)
@@ -88,7 +88,9 @@ def test_normal_and_uv_as_the_reference(device, shape, seed):
     if primitives.kind in ("sphere", "cylinder", "cone"):  # the seam: u = 0 is u = 1
         whole = np.abs(primitives.uv_transform[:, 0]) if hasattr(primitives, "uv_transform") else 1.0
         round_uv = getattr(primitives, "planar", np.zeros(len(uv))) == 0
-        difference[:, 0] = np.where(round_uv, np.minimum(difference[:, 0], np.abs(difference[:, 0] - whole)), difference[:, 0])
+        difference[:, 0] = np.where(
+            round_uv, np.minimum(difference[:, 0], np.abs(difference[:, 0] - whole)), difference[:, 0]
+        )
     scale = np.maximum(np.abs(getattr(primitives, "uv_transform", np.ones((len(uv), 4)))).max(axis=-1), 1.0)
     scale = np.maximum(scale, np.abs(uv).max(axis=-1))
     wrong = sure[:, None] & (difference > (tolerance * scale)[:, None])
@@ -124,7 +126,7 @@ def spawned(device, shape, seed, side):
 @each_seed
 @pytest.mark.parametrize("shape", CONVEX)
 def test_a_ray_that_leaves_outwards_never_hits_again(device, shape, seed):
-    primitives, following, hits = spawned(device, shape, seed, 1.0)
+    primitives, _, hits = spawned(device, shape, seed, 1.0)
     assert (shapes.signed_distance(primitives, hits.spawned) > 0.0).all()
     assert not np.isfinite(hits.t_next).any(), f"{np.isfinite(hits.t_next).sum()} of {len(primitives)}"
 
@@ -133,7 +135,7 @@ def test_a_ray_that_leaves_outwards_never_hits_again(device, shape, seed):
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 @pytest.mark.parametrize("shape", FLAT)
 def test_a_flat_shape_never_hits_itself(device, shape, seed, side):
-    primitives, following, hits = spawned(device, shape, seed, side)
+    primitives, _, hits = spawned(device, shape, seed, side)
     assert (shapes.signed_distance(primitives, hits.spawned) * side > 0.0).all()
     assert not np.isfinite(hits.t_next).any(), f"{np.isfinite(hits.t_next).sum()} of {len(primitives)}"
 

@@ -101,7 +101,9 @@ def assert_as_brute_force(device, scene, oracle, origin, direction, unsure_at_mo
 def assert_limited(device, scene, packed, origin, direction, found, rows):
     """Segments that end just before the hit miss, those that end just behind it find the same."""
     t = found.t[rows].astype(np.float32)
-    short = traverse(device, scene, origin, direction, np.nextafter(t, np.float32(0.0)) * np.float32(0.99999), packed=packed)
+    short = traverse(
+        device, scene, origin, direction, np.nextafter(t, np.float32(0.0)) * np.float32(0.99999), packed=packed
+    )
     assert not np.isfinite(short.t).any() and not short.any.any()
     longer = traverse(device, scene, origin, direction, t * np.float32(1.00001), packed=packed)
     assert np.allclose(longer.t, t, rtol=3e-7, atol=0.0) and longer.any.all()
@@ -121,7 +123,7 @@ def explain(rows, origin, direction, found, t, number):
 def test_mixed_scenes(device, count, instances, seed):
     rng = np.random.default_rng([seed, count, instances])
     scene, oracle = scenes.mixed(rng, count, instances if count < 5000 else 1)
-    found, hit = assert_as_brute_force(device, scene, oracle, *rays_for(rng, oracle))
+    _, hit = assert_as_brute_force(device, scene, oracle, *rays_for(rng, oracle))
     assert hit.mean() > 0.1
 
 
@@ -159,7 +161,9 @@ def one(primitives):
 def flat_grid():
     """A floor of 2 x 400 triangles at z = 0.3, axis-aligned and without any height."""
     x, y = (g.ravel() / 10.0 - 1.0 for g in np.meshgrid(np.arange(20), np.arange(20)))
-    corners = [np.stack([x + i, y + j, np.full(400, 0.3)], axis=-1) for i, j in ((0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1))]
+    corners = [
+        np.stack([x + i, y + j, np.full(400, 0.3)], axis=-1) for i, j in ((0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1))
+    ]
     a, b, c, d = corners
     return Triangles(p0=np.concatenate([a, a]), p1=np.concatenate([b, c]), p2=np.concatenate([c, d]))
 
@@ -167,13 +171,19 @@ def flat_grid():
 SPECIAL = {
     "one sphere": lambda rng: Spheres(center=[[0.1, 0.2, 0.3]], radius=[0.7]),
     "concentric spheres": lambda rng: Spheres(center=np.zeros((40, 3)), radius=np.linspace(0.02, 0.8, 40)),
-    "equal centroids": lambda rng: Cylinders(base=-(v := shapes.unit_vectors(rng, 60)), apex=v, radius=np.full(60, 0.05)),
+    "equal centroids": lambda rng: Cylinders(
+        base=-(v := shapes.unit_vectors(rng, 60)), apex=v, radius=np.full(60, 0.05)
+    ),
     "heap": lambda rng: Spheres(center=rng.normal(size=(300, 3)) * 0.05, radius=rng.uniform(0.3, 0.6, 300)),
     "flat floor": lambda rng: flat_grid(),
     "flat discs": lambda rng: Discs(
-        center=np.concatenate([rng.uniform(-1, 1, (100, 2)), np.zeros((100, 1))], axis=1), normal=[0, 0, 1.0], radius=0.1
+        center=np.concatenate([rng.uniform(-1, 1, (100, 2)), np.zeros((100, 1))], axis=1),
+        normal=[0, 0, 1.0],
+        radius=0.1,
     ),
-    "duplicates": lambda rng: Spheres(center=np.repeat(rng.uniform(-1, 1, (5, 3)), 30, axis=0), radius=np.full(150, 0.3)),
+    "duplicates": lambda rng: Spheres(
+        center=np.repeat(rng.uniform(-1, 1, (5, 3)), 30, axis=0), radius=np.full(150, 0.3)
+    ),
     "large and small": lambda rng: Spheres(
         center=rng.uniform(-1, 1, (200, 3)), radius=shapes.log_uniform(rng, 1e-3, 1.0, 200)
     ),
@@ -185,7 +195,7 @@ SPECIAL = {
 def test_special_scenes(device, name, seed):
     rng = np.random.default_rng(seed)
     scene, oracle = one(SPECIAL[name](rng))
-    found, hit = assert_as_brute_force(device, scene, oracle, *rays_for(rng, oracle), unsure_at_most=0.05)
+    _, hit = assert_as_brute_force(device, scene, oracle, *rays_for(rng, oracle), unsure_at_most=0.05)
     assert hit.any()
 
 
@@ -244,6 +254,28 @@ def test_a_closed_mesh_is_watertight(device, instanced, scale, seed):
 
 
 @each_seed
+@pytest.mark.parametrize("away", [3.0, 100.0, 1000.0])
+def test_a_closed_mesh_is_watertight_from_afar(device, away, seed):
+    """Rays from afar along a coordinate plane, at vertices that lie in it or beside them: there a box's face is told
+    apart far better than the triangles that meet there."""
+    rng = np.random.default_rng(seed)
+    vertices, faces = icosphere(rng, 5)
+    scene = scenes.empty_scene()
+    scenes.new_materials(scene, 1)
+    scene.add(Triangles(**{f"p{i}": vertices[faces[:, i]] for i in range(3)}))
+    for axis in range(3):
+        targets = np.repeat(vertices[np.abs(vertices[:, axis]) < 1e-12].astype(np.float64), 100, axis=0)
+        outwards = shapes.normalized(targets) + 0.3 * shapes.unit_vectors(rng, len(targets))
+        outwards[:, axis] = shapes.log_uniform(rng, 1e-9, 1e-3, len(targets)) * rng.choice([-1, 0, 1], len(targets))
+        targets[:, axis] = shapes.log_uniform(rng, 1e-8, 1e-4, len(targets)) * rng.choice([-1, 0, 1], len(targets))
+        origin = shapes.single(targets + away * shapes.normalized(outwards))
+        direction = shapes.single(shapes.normalized(targets - origin))
+        found = traverse(device, scene, origin, direction)
+        assert np.isfinite(found.t).all(), f"{(~np.isfinite(found.t)).sum()} of {len(origin)} slipped through"
+        assert found.any.all()
+
+
+@each_seed
 def test_surfaces_of_instances(device, seed):
     """Positions lie on the world's surface within the error; normals stand on it; spawned rays do not hit again."""
     rng = np.random.default_rng(seed)
@@ -285,3 +317,24 @@ def test_leaf_and_index_survive_the_gpu(device):
     assert np.array_equal(color[:, 2].astype(np.int64) + color[:, 3].astype(np.int64) * 65536, index)
     assert (root[:, 0] == 0).all()
     assert np.array_equal(root[:, 2].astype(np.int64) + root[:, 3].astype(np.int64) * 65536, index)
+
+
+@each_seed
+@pytest.mark.parametrize("solid", ["cylinder", "cone"])
+def test_a_solid_is_closed_at_its_rim(device, solid, seed):
+    """Rays at the circle where the side meets its cap, on into the body, do not get in between the two."""
+    rng = np.random.default_rng(seed)
+    for _ in range(5):
+        axis, base = shapes.unit_vectors(rng, 1), rng.uniform(-1, 1, (1, 3))
+        scene = scenes.empty_scene()
+        scenes.new_materials(scene, 1)
+        if solid == "cylinder":
+            scene.add_cylinders(base, base + axis, [0.5])
+        else:
+            scene.add_cones(base, base + axis, [0.5], [0.2])
+        rim = base + 0.5 * shapes.normalized(np.cross(axis, shapes.unit_vectors(rng, 5000)))
+        inside = base + 0.5 * axis + 0.1 * shapes.unit_vectors(rng, 5000)
+        origin = shapes.single(rim - 3.0 * shapes.normalized(inside - rim))
+        direction = shapes.single(shapes.normalized(rim - origin))
+        found = traverse(device, scene, origin, direction)
+        assert np.allclose(found.t, 3.0, atol=1e-4), f"{(np.abs(found.t - 3.0) > 1e-4).sum()} got in"

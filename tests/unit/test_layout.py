@@ -54,7 +54,7 @@ def test_records_are_fetched_from_their_own_place(record):
 
 
 def test_the_frame_is_laid_out_as_std140_lays_it_out():
-    """Offsets by std140's rules: vec3 and vec4 begin at multiples of 16 bytes, vec2 of 8, a float may fill up a vec3."""
+    """Offsets by std140's rules: vec3 and vec4 begin at multiples of 16 bytes, vec2 of 8, a float may follow a vec3."""
     align = {"float": 4, "vec2": 8, "vec3": 16, "vec4": 16}
     offset = 0
     for field in layout.FRAME.fields:
@@ -90,7 +90,8 @@ def test_indices_survive_float32(index):
 
 def test_leaves_survive_float32():
     kind, count, high = (
-        a.ravel() for a in np.meshgrid(range(len(layout.KINDS)), range(layout.MAX_LEAF_SIZE + 1), [0, 1, 127, 2**16 - 1])
+        a.ravel()
+        for a in np.meshgrid(range(len(layout.KINDS)), range(layout.MAX_LEAF_SIZE + 1), [0, 1, 127, 2**16 - 1])
     )
     leaf = layout.pack_leaf(kind, count, high)
     assert leaf.max() < 2**24 and (leaf.astype(np.float32) == leaf).all()

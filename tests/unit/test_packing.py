@@ -61,8 +61,11 @@ def leaves(packed):
 
 
 def test_every_primitive_is_in_one_leaf():
-    """Of two geometries and the world's shapes, each kind's records lie in one texture, one geometry after the other."""
-    geometries = [Geometry(spheres(40), Cylinders(base=[[0, 0, 0]], apex=[[0, 0, 1]], radius=0.1)), Geometry(spheres(70))]
+    """Of two geometries and the world's shapes, each kind's records lie in one texture, geometry after geometry."""
+    geometries = [
+        Geometry(spheres(40), Cylinders(base=[[0, 0, 0]], apex=[[0, 0, 1]], radius=0.1)),
+        Geometry(spheres(70)),
+    ]
     scene = scene_of(spheres(30))
     scene.instances = [Instance(geometries[i], np.eye(4)) for i in (0, 1, 0)]
     packed = pack(scene, LIMIT)
@@ -151,7 +154,7 @@ def test_instances_share_geometry_and_materials():
 def test_positions_are_relative_to_an_origin_near_the_camera(away):
     """A million metres away the records are as exact as at 0."""
     offset = np.array([away, -2.0 * away, away])
-    packed = pack(scene_of(spheres(50, offset=offset), eye=offset + [0, -5, 0]), LIMIT)
+    packed = pack(scene_of(spheres(50, offset=offset), eye=np.add(offset, [0, -5, 0])), LIMIT)
     assert (packed.origin == 0.0).all() if away == 0.0 else np.abs(packed.origin - offset).max() < 40.0
     sphere = records(packed, layout.SPHERE, 50)
     exact = spheres(50, offset=offset)
@@ -168,20 +171,20 @@ def test_the_origin_stays_while_the_camera_moves_a_little():
 
 def test_lights_planes_and_instances_move_with_the_origin():
     offset = np.array([1e6, 0.0, 0.0])
-    scene = scene_of(spheres(5, offset=offset), eye=offset + [0, -5, 0])
-    scene.add(Planes(point=[offset + [0, 0, -1.0]], normal=[[1.0, 0, 0]]))
-    scene.lights = [Light.point(offset + [0, 0, 3.0], 1.0), Light.sun((0, 0, 1), 1.0)]
+    scene = scene_of(spheres(5, offset=offset), eye=np.add(offset, [0, -5, 0]))
+    scene.add(Planes(point=[np.add(offset, [0, 0, -1.0])], normal=[[1.0, 0, 0]]))
+    scene.lights = [Light.point(np.add(offset, [0, 0, 3.0]), 1.0), Light.sun((0, 0, 1), 1.0)]
     matrix = np.eye(4)
-    matrix[:3, 3] = offset + [0, 2.0, 0]
+    matrix[:3, 3] = np.add(offset, [0, 2.0, 0])
     scene.instances = [Instance(Geometry(spheres(1)), matrix)]
     packed = pack(scene, LIMIT)
     light = records(packed, layout.LIGHT, 2)
-    assert np.allclose(light["position"][0], offset + [0, 0, 3.0] - packed.origin)
+    assert np.allclose(light["position"][0], np.add(offset, [0, 0, 3.0]) - packed.origin)
     assert np.allclose(light["position"][1], [0, 0, 1]), "a direction has no place"
     assert np.allclose(records(packed, layout.PLANE, 1)["offset"], packed.origin[0] - offset[0])
     placed = records(packed, layout.INSTANCE_SURFACE, 2)
     places = np.stack([placed[f"to_world_{axis}"][:, 3] for axis in "xyz"], axis=-1)
-    assert any(np.allclose(place, offset + [0, 2.0, 0] - packed.origin) for place in places)
+    assert any(np.allclose(place, np.add(offset, [0, 2.0, 0]) - packed.origin) for place in places)
     assert any(np.allclose(place, 0.0) for place in places), "the world's shapes are moved themselves"
 
 
@@ -246,7 +249,9 @@ def test_no_scale_is_too_small_or_large_for_an_instance(scale):
 
 @pytest.mark.parametrize("material", [-1, 2, 100])
 def test_a_material_that_is_not_there(material):
-    refuse(scene_of(Planes(point=[[0, 0, 0]], normal=[[0, 0, 1]], material=material), materials=2), "a plane uses material")
+    refuse(
+        scene_of(Planes(point=[[0, 0, 0]], normal=[[0, 0, 1]], material=material), materials=2), "a plane uses material"
+    )
     scene = scene_of(materials=2)
     scene.instances = [Instance(Geometry(spheres(1)), np.eye(4), (material,), "pot")]
     refuse(scene, f"instance 'pot' uses material {material}, the scene has 2")

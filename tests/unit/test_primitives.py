@@ -66,9 +66,15 @@ def test_one_value_stands_for_all_rows():
             "cone number 0: one radius is negative, the other positive",
         ),
         (lambda: Cones(base=[[1, 1, 1]], apex=[[1, 1, 1]], base_radius=1), "cone number 0: both ends are the same"),
-        (lambda: Discs(center=[[0, 0, 0]], normal=[[0, 0, 1]], radius=-1), "disc number 0: the radius must be positive"),
+        (
+            lambda: Discs(center=[[0, 0, 0]], normal=[[0, 0, 1]], radius=-1),
+            "disc number 0: the radius must be positive",
+        ),
         (lambda: Discs(center=[[0, 0, 0]], normal=[[0, 0, 0]], radius=1), "disc: normal of number 0 has no length"),
-        (lambda: Planes(point=[[0, 0, 0]], normal=[[0, 0, 1]], tile=0), "plane number 0: the tile size must be positive"),
+        (
+            lambda: Planes(point=[[0, 0, 0]], normal=[[0, 0, 1]], tile=0),
+            "plane number 0: the tile size must be positive",
+        ),
     ],
 )
 def test_what_is_no_shape_is_refused(make, message):
@@ -138,7 +144,13 @@ def matrix_of(linear):
 
 @pytest.mark.parametrize(
     "linear",
-    [np.diag([1, 1, 1.001]), np.diag([-1.0, 1, 1]), np.zeros((3, 3)), np.diag([1.0, 1, 0]), [[1, 0.01, 0], [0, 1, 0], [0, 0, 1]]],
+    [
+        np.diag([1, 1, 1.001]),
+        np.diag([-1.0, 1, 1]),
+        np.zeros((3, 3)),
+        np.diag([1.0, 1, 0]),
+        [[1, 0.01, 0], [0, 1, 0], [0, 0, 1]],
+    ],
 )
 def test_what_does_not_keep_shapes_is_no_similarity(linear):
     assert Similarity.of(matrix_of(linear)) is None
@@ -147,7 +159,9 @@ def test_what_does_not_keep_shapes_is_no_similarity(linear):
 def test_a_float32_rotation_is_a_similarity():
     angle = np.linspace(0, 7, 50)
     for a in angle:
-        turn = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]], np.float32) * np.float32(0.3)
+        turn = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]], np.float32) * np.float32(
+            0.3
+        )
         assert Similarity.of(matrix_of(turn)) is not None
 
 
@@ -161,7 +175,9 @@ def test_bounds_are_tight():
     angle = np.linspace(0, 2 * np.pi, 2000)[:, None, None]
     circle = np.cos(angle) * side + np.sin(angle) * np.cross(axis, side)
     lower, upper = Discs(center=np.zeros((20, 3)), normal=axis, radius=2.0).bounds()
-    assert np.allclose(lower, 2 * circle.min(axis=0), atol=1e-5) and np.allclose(upper, 2 * circle.max(axis=0), atol=1e-5)
+    assert np.allclose(lower, 2 * circle.min(axis=0), atol=1e-5) and np.allclose(
+        upper, 2 * circle.max(axis=0), atol=1e-5
+    )
     lower, upper = Cones(base=np.zeros((20, 3)), apex=3 * axis, base_radius=2.0, apex_radius=-0.0).bounds()
     points = np.concatenate([2 * circle, 3 * axis[None]])
     assert np.allclose(lower, points.min(axis=0), atol=1e-5) and np.allclose(upper, points.max(axis=0), atol=1e-5)

@@ -70,7 +70,9 @@ def test_a_camera_looks_at_its_target():
     [((1, 1, 1), (1, 1, 1), (0, 0, 1)), ((0, 0, 5), (0, 0, 0), (0, 0, 1)), ((0, 0, 5), (0, 1, 0), (0, 0, 0))],
 )
 def test_a_camera_without_a_view_is_refused(eye, target, up):
-    with pytest.raises(SceneError, match="gives no view; the two points must differ and up must not lie along the view"):
+    with pytest.raises(
+        SceneError, match="gives no view; the two points must differ and up must not lie along the view"
+    ):
         Camera.look_at(eye, target, up)
 
 

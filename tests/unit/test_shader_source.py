@@ -30,9 +30,7 @@ def body(source):
 
 
 def test_a_file_is_included_once(compose):
-    source = compose(
-        main='#include "a.glsl"\n#include "b.glsl"\nmain', a='#include "b.glsl"\na', b="b"
-    )
+    source = compose(main='#include "a.glsl"\n#include "b.glsl"\nmain', a='#include "b.glsl"\na', b="b")
     assert body(source) == ["b", "a", "main"]
 
 
@@ -109,7 +107,9 @@ def test_folders_are_searched_in_order_and_records_can_be_added(tmp_path):
 
 
 def test_the_same_request_gives_the_same_program():
-    assert program("trace_frag.glsl", KINDS, {"A": 1, "B": 2}) is program("trace_frag.glsl", KINDS[::-1], {"B": 2, "A": 1})
+    assert program("trace_frag.glsl", KINDS, {"A": 1, "B": 2}) is program(
+        "trace_frag.glsl", KINDS[::-1], {"B": 2, "A": 1}
+    )
     assert "#define A 1" in program("trace_frag.glsl", KINDS, {"A": 1}).fragment
 
 

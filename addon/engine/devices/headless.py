@@ -1,6 +1,7 @@
 """A context without a window through moderngl: tests, command line and library use. The only file that imports
 moderngl."""
 
+import functools
 import re
 
 import numpy as np
@@ -32,6 +33,17 @@ def _context():
     raise DeviceError(_NO_DRIVER.format(cause="; ".join(dict.fromkeys(causes))))
 
 
+def _in_context(method):
+    """Make the device's context current meanwhile: there may be others in the process, Blender's among them."""
+
+    @functools.wraps(method)
+    def inside(self, *arguments):
+        with self._context:
+            return method(self, *arguments)
+
+    return inside
+
+
 class HeadlessDevice:
     """`Device` on an OpenGL 3.3 context of its own. Raises DeviceError when there is no driver."""
 
@@ -41,9 +53,11 @@ class HeadlessDevice:
         self.name = f"{info['GL_RENDERER']} (OpenGL {info['GL_VERSION']})"
         self.max_texture_size = int(info["GL_MAX_TEXTURE_SIZE"])
         self._programs = {}
-        self._triangle = self._context.buffer(np.array(FULL_SCREEN_TRIANGLE, np.float32).tobytes())
         self._uniforms = None
+        with self._context:
+            self._triangle = self._context.buffer(np.array(FULL_SCREEN_TRIANGLE, np.float32).tobytes())
 
+    @_in_context
     def texture(self, texels):
         height, width, _ = texels.shape
         try:
@@ -53,6 +67,7 @@ class HeadlessDevice:
         texture.filter = (self._context.NEAREST, self._context.NEAREST)
         return texture
 
+    @_in_context
     def target(self, width, height, attachments):
         try:
             colors = [self._context.texture((width, height), 4, dtype="f4") for _ in range(attachments)]
@@ -62,6 +77,7 @@ class HeadlessDevice:
         target.clear()
         return target
 
+    @_in_context
     def program(self, source):
         if source not in self._programs:
             fragment = self._declarations(source) + source.fragment
@@ -85,6 +101,7 @@ class HeadlessDevice:
         block = f"{source.uniform_struct}layout(std140) uniform frame_block {{ Frame frame; }};\n"
         return f"#version 330\n{block if source.uniform_struct else ''}{samplers}{outputs}#line 1\n"
 
+    @_in_context
     def draw(self, program, target, rectangle, textures, uniforms):
         source, vertices = program
         gl = self._context
@@ -102,11 +119,13 @@ class HeadlessDevice:
         vertices.render(gl.TRIANGLES)
         target.scissor = None
 
+    @_in_context
     def read(self, target, attachment, rectangle):
         x, y, width, height = rectangle
         data = target.read((x, y, width, height), 4, attachment=attachment, dtype="f4", alignment=1)
         return np.frombuffer(data, np.float32).reshape(height, width, 4)
 
+    @_in_context
     def release(self, thing):
         for attachment in getattr(thing, "color_attachments", ()):
             attachment.release()
