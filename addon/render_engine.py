@@ -49,4 +49,4 @@ def unregister():
     bpy.utils.unregister_class(ConicRenderEngine)
     gpu_thread.unregister()
     viewport_display.unregister()
-    blender_gpu._PROGRAMS.clear()  # as the display shader: Python would free them after Blender's end
+    blender_gpu.free_programs()  # as the display shader: Python would free them after Blender's end

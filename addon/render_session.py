@@ -114,7 +114,8 @@ class LayerRender:
         session = self.on_gpu(lambda: Session(new_device()))
         try:
             self.engine.update_stats("Conic", f"Building | {self.shapes}")
-            self.on_gpu(session.load, scene, self.settings)
+            session.build(scene, self.settings)
+            self.on_gpu(session.upload)
             for index, view in enumerate(self.views):
                 if not self.engine.test_break():
                     self.render_view(session, index, view)

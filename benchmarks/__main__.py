@@ -118,7 +118,7 @@ def _for_povray(scene):
 
 
 def measure(name, size, runs):
-    """Print one row a program for the scene `name`: median and spread of the seconds, ratio of the median to Conic's."""
+    """Print a row for each program: median and spread of the seconds, ratio of the median to Conic's."""
     scene = _for_povray(SCENES[name]())
     with tempfile.TemporaryDirectory() as folder:
         programs = {"Conic": Conic(scene, size)}

@@ -63,7 +63,7 @@ def _parse(arguments):
     parser.add_argument(
         "--strict",
         action="store_true",
-        help="the databases' rules: corner rays averaged, depth 5 unless --depth, no cut-off, 512 512 unless --size is given",
+        help="the databases' rules: corner rays averaged, depth 5 unless --depth, no cut-off, 512 512 unless --size",
     )
     parser.add_argument("--stats", metavar="FILE.json", help="write ray counts, times and sizes")
     options = parser.parse_args(arguments)

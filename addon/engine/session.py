@@ -35,23 +35,32 @@ class Session:
 
     def load(self, scene, settings):
         """Build the trees, upload the scene and compile its program, in place of what was loaded before."""
-        self.settings, self.camera = settings, scene.camera
-        self._seconds = dict.fromkeys(self._seconds, 0.0)
+        self.build(scene, settings)
+        self.upload()
+
+    def build(self, scene, settings):
+        """The part of `load` that is the processor's work alone; it needs no GPU context and no particular thread."""
         self._packed = pack(scene, self.device.max_texture_size)
+        self.settings, self.camera = settings, scene.camera
         self.warnings = list(self._packed.warnings)
-        self._seconds["build"] = self._packed.statistics["seconds"]["build"]
+        self._counts = settings.count_rays or settings.may_drop
+        self._transmits = any(max(material.transmit) > 0.0 for material in scene.materials)
+        self._seconds = dict.fromkeys(self._seconds, 0.0) | self._packed.statistics["seconds"]
+
+    def upload(self):
+        """The rest of `load`: textures and program of what was built."""
+        textures = self._packed.textures
+        self._gpu_bytes = sum(texels.nbytes for texels in textures.values())
         with self._timed("upload"):
             self._release_textures()
-            self._textures = {name: self.device.texture(texels) for name, texels in self._packed.textures.items()}
-        self._gpu_bytes = sum(texels.nbytes for texels in self._packed.textures.values())
-        self._counts = settings.count_rays or settings.may_drop
+            self._textures = {name: self.device.texture(texels) for name, texels in textures.items()}
+        self._packed.textures = {}  # they have been copied
         with self._timed("compile"):
-            self._program = self.device.program(self._source(scene))
+            self._program = self.device.program(self._source())
 
-    def _source(self, scene):
+    def _source(self):
         features = set(self._packed.features)
-        transmits = any(max(material.transmit) > 0.0 for material in scene.materials)
-        if self.settings.tinted_shadows and transmits:
+        if self.settings.tinted_shadows and self._transmits:
             features.add("TINTED_SHADOWS")
         if self._counts:
             features.add("COUNT_RAYS")

@@ -32,6 +32,8 @@ def camera_of_render(engine, depsgraph, width, height, *, camera=None, reports=N
     )
     matrix = engine.camera_model_matrix(camera) if engine is not None else camera.matrix_world
     window = _window(np.array(projection, np.float64))
+    if engine is not None:
+        window = _eye_window(window, engine.camera_shift_x(camera) - data.shift_x, data.sensor_fit)
     return Camera(_without_scale(matrix, camera.name), window, data.type == "ORTHO", (data.clip_start, data.clip_end))
 
 
@@ -60,6 +62,15 @@ def _window(projection):
         scale, offset = projection[row, row], projection[row, 2] if perspective else -projection[row, 3]
         edges += [(offset - 1.0) / scale, (offset + 1.0) / scale]
     return tuple(float(edge) for edge in edges)
+
+
+def _eye_window(window, shift, sensor_fit):
+    """The window of one eye of an off-axis stereo pair, which the projection matrix leaves out: moved sideways by
+    `shift` times the length of the side that the sensor fits."""
+    left, right, bottom, top = window
+    horizontal = sensor_fit == "HORIZONTAL" or (sensor_fit == "AUTO" and right - left >= top - bottom)
+    offset = shift * ((right - left) if horizontal else (top - bottom))
+    return left + offset, right + offset, bottom, top
 
 
 def _clip(projection, orthographic):

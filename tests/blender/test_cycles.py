@@ -32,8 +32,8 @@ def lit_scene():
         node(tree, "BsdfDiffuse", output.inputs["Surface"], Color=(*color, 1.0), Roughness=0.0)
         shape.data.materials.append(diffuse)
         if shape.name.startswith(("Ico", "Cone", "Torus")):
-            round_side = [len(face.vertices) <= 4 for face in shape.data.polygons]  # not the caps
-            shape.data.polygons.foreach_set("use_smooth", round_side)
+            shape.data.shade_smooth()
+            shape.data.set_sharp_from_angle(angle=0.9)  # between the cone's side and its caps
     scene.world = None
     return scene
 

@@ -136,22 +136,30 @@ def test_border_is_that_part_of_the_picture(scene, tmp_path, low, high, crop):
         assert (pixels[outside][:, :3] == 0.0).all()
 
 
-def test_stereo_eyes_see_from_two_places(scene, tmp_path):
+def columns_of_eyes(scene, folder, mode):
+    """Where the left and the right eye see the sphere's centre, in pixels from the middle of the picture."""
     scene.camera.data.type = "PERSP"
     stereo = scene.camera.data.stereo
-    stereo.convergence_mode, stereo.pivot, stereo.interocular_distance = "PARALLEL", "CENTER", 1.0
+    stereo.convergence_mode, stereo.pivot, stereo.interocular_distance = mode, "CENTER", 1.0
+    stereo.convergence_distance = 10.0  # where the sphere is
     scene.render.use_multiview, scene.render.image_settings.views_format = True, "INDIVIDUAL"
     scene.render.image_settings.file_format = "PNG"  # before 5.0 Blender cannot read the EXR of an eye
     scene.view_settings.view_transform = "Raw"
-    scene.render.filepath = str(tmp_path / "eyes.png")
+    scene.render.filepath = str(folder / "eyes.png")
     bpy.ops.render.render(write_still=True)
-    columns = {}
-    for eye in ("L", "R"):
-        mask = picture(tmp_path / f"eyes_{eye}.png")[..., 0] > 0.9
-        columns[eye] = np.nonzero(mask)[1].mean() + 0.5 - WIDTH / 2
+    masks = [picture(folder / f"eyes_{eye}.png")[..., 0] > 0.9 for eye in "LR"]
+    return [np.nonzero(mask)[1].mean() + 0.5 - WIDTH / 2 for mask in masks]
+
+
+def test_parallel_eyes_see_from_two_places(scene, tmp_path):
+    left, right = columns_of_eyes(scene, tmp_path, "PARALLEL")
     shift = 0.5 / 10.0 * scene.camera.data.lens / scene.camera.data.sensor_width * WIDTH
-    assert columns["L"] == pytest.approx(shift, abs=0.5)
-    assert columns["R"] == pytest.approx(-shift, abs=0.5)
+    assert (left, right) == (pytest.approx(shift, abs=0.5), pytest.approx(-shift, abs=0.5))
+
+
+@pytest.mark.parametrize("mode", ["OFFAXIS", "TOE"])
+def test_converging_eyes_see_what_they_converge_on_in_the_same_place(scene, tmp_path, mode):
+    assert columns_of_eyes(scene, tmp_path, mode) == [pytest.approx(0.0, abs=0.5)] * 2
 
 
 def test_each_view_layer_has_its_own_objects(scene, tmp_path):

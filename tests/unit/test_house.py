@@ -54,9 +54,7 @@ def test_one_file_of_the_engine_imports(package, file):
 @pytest.mark.parametrize("file", FILES)
 def test_own_modules_are_imported_relatively(file):
     """An installed extension is bl_ext.<repository>.conic: no module is called `addon` there."""
-    assert not {
-        name for level, name in imports(ADDON / file) if level == 0 and name.partition(".")[0] == "addon"
-    }
+    assert not {name for level, name in imports(ADDON / file) if level == 0 and name.partition(".")[0] == "addon"}
 
 
 @pytest.mark.parametrize("file", FILES)

@@ -18,6 +18,11 @@ _VERTEX = "void main() { gl_Position = vec4(position, 0.0, 1.0); }"
 _PROGRAMS = {}
 
 
+def free_programs():
+    """Give all programs back to Blender while it can still take them: before its end."""
+    _PROGRAMS.clear()
+
+
 class BlenderDevice:
     """`Device` on the GPU context that is active: in `RenderEngine.render` and `view_draw`.
 
