@@ -86,7 +86,7 @@ def _view(records):
     value = {keyword: records.columns(np.array([r]), records.counts(r))[0] for keyword, r in rows.items()}
     angle, hither = float(value["angle"][0]), float(value["hither"][0])
     if not 0.0 < angle < 180.0:
-        raise records.error(rows["angle"], f"the angle is {angle:g}, expected degrees between 0 and 180")
+        raise records.error(rows["angle"], f"the angle is {angle:g}, expected more than 0 and less than 180 degrees")
     if hither < 0.0:
         raise records.error(rows["hither"], f"hither is {hither:g}, expected a distance from 0 up")
     width, height = value["resolution"]

@@ -11,10 +11,11 @@ from .meshes import read_triangles
 from .objects import Recognitions, taken_as
 from .placement import invertible, place_shape
 
-#: Types whose evaluated geometry comes along as meshes of their own, or that show nothing.
+#: Types whose evaluated geometry comes along as meshes of their own, that show nothing, or that Blender draws itself.
 _SILENT = {
     *("CURVE", "FONT", "META", "SURFACE"),
     *("EMPTY", "CAMERA", "ARMATURE", "LATTICE", "LIGHT_PROBE", "SPEAKER"),
+    *("GPENCIL", "GREASEPENCIL"),
 }
 _VISIBLE_TO = tuple(f"visible_{ray}" for ray in ("camera", "diffuse", "glossy", "transmission", "shadow"))
 
@@ -32,9 +33,10 @@ class _Asset:
 class ObjectSync:
     """Collects the objects of a depsgraph, then places them in the engine scene."""
 
-    def __init__(self, scene, shadings, lights, reports, recognise_setting, material_override=None):
+    def __init__(self, scene, shadings, lights, reports, recognise_setting, view_layer):
         self._scene, self._shadings, self._lights, self._reports = scene, shadings, lights, reports
-        self._recognise, self._override = recognise_setting, material_override
+        self._recognise, self._view_layer = recognise_setting, view_layer
+        self._override = view_layer.material_override
         self._recognitions = Recognitions()
         self._assets = {}
         self._of_object = {}
@@ -87,12 +89,13 @@ class ObjectSync:
     def _read(self, obj, kind):
         shadings = self._shadings_of(obj)
         self._report_flags(obj)
+        self._report_hair(obj)
         if kind == "MESH":
             content = self._mesh_content(obj, shadings)
         elif kind == "POINTCLOUD":
             content = self._points(obj)
         else:
-            self._reports.warn(f"object {obj.name!r}: a {kind.replace('_', ' ').lower()} is not rendered")
+            self._reports.warn(f"object {obj.name!r}: {kind.replace('_', ' ').lower()} geometry is not rendered")
             content = None
         if content is None:
             return None
@@ -103,9 +106,19 @@ class ObjectSync:
         """Name the settings of visibility that are not rendered."""
         if not all(getattr(obj, name) for name in _VISIBLE_TO):
             self._reports.warn(f"object {obj.name!r}: its ray visibility is not rendered, all rays see it")
-        for name in ("is_holdout", "is_shadow_catcher"):
-            if getattr(obj, name):
-                self._reports.warn(f"object {obj.name!r}: it is not rendered as a {name[3:].replace('_', ' ')}")
+        flags = {
+            "a holdout": obj.is_holdout or obj.original.holdout_get(view_layer=self._view_layer),
+            "a shadow catcher": obj.is_shadow_catcher,
+            "indirect only": obj.original.indirect_only_get(view_layer=self._view_layer),
+        }
+        for flag, is_set in flags.items():
+            if is_set:
+                self._reports.warn(f"object {obj.name!r}: it is not rendered as {flag}")
+
+    def _report_hair(self, obj):
+        for system in obj.particle_systems:
+            if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
+                self._reports.warn(f"object {obj.name!r}: the hair of {system.name!r} is not rendered")
 
     def _shadings_of(self, obj):
         """The `Shading` of each of the object's slots, at least one."""

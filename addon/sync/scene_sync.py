@@ -31,9 +31,7 @@ def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report):
     scene.world = read_world(world, scene, images, reports)
     shadings = Shadings(scene, images, reports)
     lights = Lights(scene, reports)
-    objects = ObjectSync(
-        scene, shadings, lights, reports, depsgraph.scene_eval.conic.recognise, view_layer.material_override
-    )
+    objects = ObjectSync(scene, shadings, lights, reports, depsgraph.scene_eval.conic.recognise, depsgraph.view_layer)
     objects.collect(depsgraph)
     objects.place()
     lights.finish()

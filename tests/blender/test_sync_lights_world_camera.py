@@ -120,6 +120,17 @@ def world(**background):
     return made, made.node_tree, node(made.node_tree, "Background", output.inputs["Surface"], **background)
 
 
+def test_a_light_that_is_nowhere_is_reported_and_the_rest_shines():
+    add_camera()
+    for name, energy, x in (("endless", np.inf, 0.0), ("nowhere", 10.0, np.nan), ("lamp", 10.0, 1.0)):
+        data = bpy.data.lights.new(name, "POINT")
+        data.energy = energy
+        link(data, name, location=(x, 0.0, 2.0))
+    synced = sync()
+    assert [light.position for light in synced.scene.lights] == [(1.0, 0.0, 2.0)]
+    assert synced.warnings("'endless'", "not finite") and synced.warnings("'nowhere'", "not finite")
+
+
 def test_no_world_is_black():
     add_camera()
     assert sync().scene.world.color == (0.0, 0.0, 0.0)

@@ -1,9 +1,24 @@
 """Energy and optics against formulas: what a picture must be, whatever renders it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from addon.engine import Camera, Geometry, Image, Instance, Light, Material, Scene, Settings, Spheres, World, render
+from addon.engine import (
+    Camera,
+    Geometry,
+    Image,
+    Instance,
+    Light,
+    Material,
+    Scene,
+    Settings,
+    Spheres,
+    Triangles,
+    World,
+    render,
+)
 
 from .probe import GlassBalls, along, fresnel
 
@@ -40,14 +55,19 @@ def test_glass_ball_in_a_furnace(device):
     assert error[away_from_edge].max() < 2e-5
 
 
-def solids(scene, materials=(0, 0, 0, 0)):
-    """A cylinder, a cone, a cube of triangles and an ellipsoid, apart from each other."""
-    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float) * 0.6 + (0.35, -0.3, -0.9)
+def cube(material, lower=(-0.5, -0.5, -0.5), size=1.0):
+    """The 12 Triangles of a cube."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float) * size + lower
     quads = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
     faces = corners[np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])]
+    return Triangles(p0=faces[:, 0], p1=faces[:, 1], p2=faces[:, 2], material=material)
+
+
+def solids(scene, materials=(0, 0, 0, 0)):
+    """A cylinder, a cone, a cube of triangles and an ellipsoid, apart from each other."""
     scene.add_cylinders((-1.0, 0.1, 0.1), (-0.4, -0.3, 0.8), 0.35, materials[0])
     scene.add_cones((-0.8, 0.0, -0.9), (-0.7, 0.1, -0.1), 0.4, 0.1, materials[1])
-    scene.add_triangles(faces[:, 0], faces[:, 1], faces[:, 2], materials[2])
+    scene.add(cube(materials[2], (0.35, -0.3, -0.9), 0.6))
     matrix = np.array([[0.5, 0.2, 0.0, 0.7], [0.0, 0.4, 0.1, 0.0], [0.0, 0.0, 0.45, 0.4], [0.0, 0.0, 0.0, 1.0]])
     scene.instances.append(Instance(Geometry(Spheres(center=(0.0, 0.0, 0.0), radius=1.0)), matrix, (materials[3],)))
 
@@ -256,6 +276,21 @@ def test_the_eye_in_glass(device):
     assert along(device, scene, (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), DEEP) == pytest.approx(expected, abs=1e-5)
 
 
+def test_a_body_of_several_materials(device):
+    """A glass cube is entered by one of its materials and left by another: the same picture as with one."""
+    checks = np.indices((8, 16)).sum(axis=0) % 2 * 0.8
+    turn = np.array([[0.8, -0.6, 0.0, 0.0], [0.48, 0.64, 0.6, 0.0], [-0.36, -0.48, 0.8, 0.0], [0.0, 0.0, 0.0, 1.0]])
+    pictures = []
+    for slots in ((0,), (0, 1, 2)):
+        body = Instance(Geometry(cube(np.arange(12) % len(slots))), turn, slots)
+        scene = Scene(camera=side_view()[0], materials=[GLASS] * 3, instances=[body])
+        sky = scene.add_image(Image(np.repeat(checks[..., None], 3, axis=-1)))
+        scene.world = World((1.0, 1.0, 1.0), sky)
+        pictures.append(picture(device, scene))
+    assert np.ptp(pictures[0]) > 0.3
+    assert np.abs(pictures[0] - pictures[1]).max() < 1e-6
+
+
 # Bounds of the work: stack, depth, weight.
 
 
@@ -331,3 +366,24 @@ def test_counts_of_a_miss(device):
     scene.add_light(Light.sun((0.0, 0.0, 1.0), 1.0))
     scene.add_plane((0.0, 0.0, 9.0), (0.0, 0.0, 1.0), 0)  # behind the camera
     assert counted(device, scene) == rays(12, 0, 0, 0, 0)
+
+
+def test_samples_that_a_driver_gives_up_are_told(device):
+    """Many lights, mirror balls that see each other: all lights at once are the sum of the parts, or a warning says
+    that they are not, as on a software rasteriser, which ends loops after 65535 turns."""
+    rng = np.random.default_rng(8)
+    turns = np.arange(600) * 2.4
+    lights = [Light.point((6.0 * np.cos(a), 6.0 * np.sin(a), 4.0 * np.sin(7.0 * a)), 10.0) for a in turns]
+    mirrors = Material(diffuse=0.5, reflect=0.5, fresnel=False)
+    scene = Scene(camera=side_view()[0], world=World((0.0, 0.0, 0.0)), materials=[mirrors])
+    scene.add_spheres(rng.normal(size=(4000, 3)), 0.06)
+    at_once, *parts = (
+        render(replace(scene, lights=some), 12, 9, Settings(max_depth=6, weight_cutoff=0.0), device=device)
+        for some in (lights, *(lights[i : i + 30] for i in range(0, 600, 30)))
+    )
+    assert not any(part.warnings for part in parts)
+    assert (at_once.pixels[..., 3] == 1.0).all()
+    error = np.abs(at_once.pixels - sum(part.pixels for part in parts))[..., :3].max()
+    assert error < 1e-3 or any("gives up" in warning for warning in at_once.warnings)
+    if "llvmpipe" in device.name:
+        assert error > 1e-3, "too little work for what this test is about"

@@ -113,8 +113,8 @@ def test_media_are_a_stack_of_bodies(device):
         for step in walk:
             if step > 0:
                 bodies = [step - 1, *bodies][:4]
-            elif step < 0 and -step - 1 in bodies:
-                bodies.remove(-step - 1)
+            elif step < 0 and bodies:
+                bodies.remove(-step - 1 if -step - 1 in bodies else bodies[0])
         assert found.tolist() == bodies + [-1] * (4 - len(bodies)), walk
         expected = materials[bodies[0]] if bodies else None
         assert around[3] == np.float32(expected["ior"] if bodies else 1.0)

@@ -204,6 +204,10 @@ def test_a_camera_that_is_nowhere():
     scene = scene_of(spheres(1))
     scene.camera = Camera(np.full((4, 4), np.nan), (-1, 1, -1, 1))
     refuse(scene, "the camera's matrix is not finite")
+    scene.camera = Camera(np.zeros((4, 4)), (-1, 1, -1, 1))
+    refuse(scene, "three axes of length 1")
+    scene.camera = Camera(np.eye(4), (-1, 1, 0, 0))
+    refuse(scene, "the camera's window (-1, 1, 0, 0) has no width or no height")
 
 
 def test_too_many_for_a_texture_is_found_before_anything_is_uploaded():

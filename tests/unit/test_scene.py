@@ -7,7 +7,7 @@ import pytest
 
 from addon.engine.errors import SceneError
 from addon.engine.primitives import Planes, Spheres
-from addon.engine.scene import Camera, Geometry, Image, Instance, Light, LightKind, Material, Scene
+from addon.engine.scene import Camera, Geometry, Image, Instance, Light, LightKind, Material, Scene, World
 
 
 def test_a_watt_is_blender_s():
@@ -30,11 +30,20 @@ def test_a_sun_s_strength_is_an_irradiance():
         ({"absorption": (0, 0, float("inf"))}, "material: absorption is"),
         ({"ior": 0.0}, "material: the index of refraction is 0.0; it must be positive"),
         ({"ior": float("nan")}, "material: the index of refraction is nan"),
+        ({"shine": float("nan")}, "material: shine is nan"),
     ],
 )
 def test_a_material_that_cannot_be(values, message):
     with pytest.raises(SceneError, match=re.escape(message)):
         Material(**values)
+
+
+def test_a_world_or_sun_that_cannot_be():
+    with pytest.raises(SceneError, match="world: color is"):
+        World((0.0, float("nan"), 0.0))
+    with pytest.raises(SceneError, match="has no length"):
+        Light.sun((0, 0, 0), 1.0)
+    assert World(0.5).color == (0.5, 0.5, 0.5)
 
 
 def test_a_number_is_a_grey_colour():
