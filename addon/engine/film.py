@@ -6,6 +6,8 @@ import numpy as np
 
 #: What one draw may take before a driver or a waiting user loses patience, in seconds.
 TILE_SECONDS = 0.04
+#: The alpha of a sample that the driver gave up: far above what samples sum up to.
+UNENDED_ALPHA = 1e30
 _FIRST_TILE_PIXELS = 4096
 _BAND_ROWS = 8
 
@@ -41,6 +43,7 @@ class Film:
         self.width, self.height = self.border[2] + corner_rays, self.border[3] + corner_rays
         self._device = device
         self.target = device.target(self.width, self.height, attachments)
+        self.unended = 0
         self._sample = self._x = self._y = 0
         self._pixels_per_tile = _FIRST_TILE_PIXELS
         self._band = self._band_rows()
@@ -93,7 +96,8 @@ class Film:
     def pixels(self):
         """What is there so far, (height, width, 4) float32 of the border, bottom row first, premultiplied alpha.
 
-        Pixels that no sample has reached yet are 0.
+        Pixels that no sample has reached yet are 0. `unended` is then the number of pixels with samples that the driver
+        gave up.
         """
         total = self._device.read(self.target, 0, (0, 0, self.width, self.height))
         counts = np.full((self.height, self.width, 1), self._sample, np.float32)
@@ -101,6 +105,9 @@ class Film:
             counts[: self._y] += 1.0
             counts[self._y : self._y + self._band, : self._x] += 1.0
         mean = total / np.maximum(counts, 1.0)
+        unended = total[..., 3] >= UNENDED_ALPHA
+        mean[unended, 3] = 1.0
+        self.unended = int(unended.sum())
         if self.corner_rays:
             mean = (mean[:-1, :-1] + mean[1:, :-1] + mean[:-1, 1:] + mean[1:, 1:]) / 4.0
         return mean

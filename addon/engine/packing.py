@@ -13,7 +13,7 @@ import numpy as np
 from . import bvh, layout
 from .errors import SceneError
 from .primitives import BY_KIND, Planes, Similarity
-from .scene import EXTENSIONS, INTERPOLATIONS, Geometry, LightKind, Material
+from .scene import EXTENSIONS, INTERPOLATIONS, LightKind, Material
 
 _INSTANCE = layout.KINDS.index("instance")
 
@@ -69,9 +69,14 @@ def pack(scene, max_texture_size):
 
 
 def _check_matrices(scene):
-    """Raise SceneError where the camera or an instance has a matrix that is not finite or cannot be inverted."""
-    if not np.isfinite(np.asarray(scene.camera.matrix, np.float64)).all():
-        raise SceneError("the camera's matrix is not finite")
+    """Raise SceneError where the camera or an instance has a matrix that is not finite or cannot be inverted, or the
+    camera's window is empty."""
+    camera = np.asarray(scene.camera.matrix, np.float64)
+    if not np.isfinite(camera).all() or abs(np.linalg.det(camera[:3, :3])) < _SINGULAR:
+        raise SceneError("the camera's matrix is not finite or not one of three axes of length 1")
+    left, right, bottom, top = scene.camera.window
+    if not np.isfinite(scene.camera.window).all() or left == right or bottom == top:
+        raise SceneError(f"the camera's window {tuple(scene.camera.window)} has no width or no height")
     matrices = np.array([instance.matrix for instance in scene.instances], np.float64).reshape(-1, 4, 4)
     bad = ~np.isfinite(matrices).all(axis=(1, 2))
     linear = np.where(bad[:, None, None], 0.0, matrices[:, :3, :3])
@@ -213,9 +218,10 @@ class _Packer:
         if block not in self._blocks:
             self._check_slots(np.array(block), f"instance {instance.name!r}")
             if len(block) == 1:
-                return block[0]
-            self._blocks[block] = len(self.materials)
-            self.materials += [self.materials[slot] for slot in block]
+                self._blocks[block] = block[0]
+            else:
+                self._blocks[block] = len(self.materials)
+                self.materials += [self.materials[slot] for slot in block]
         return self._blocks[block]
 
     def _instance_records(self, matrices, which, first_material, top):
@@ -444,6 +450,3 @@ def _halved(pixels):
             counts = np.diff([*starts, size]).reshape((-1, 1, 1) if axis == 0 else (1, -1, 1))
             pixels = np.add.reduceat(pixels, starts, axis=axis) / counts.astype(np.float32)
     return pixels
-
-
-__all__ = ["Geometry", "PackedScene", "pack", "scene_origin"]

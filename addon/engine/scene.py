@@ -13,6 +13,14 @@ from .errors import SceneError
 from .primitives import BY_KIND, Cones, Cylinders, Discs, Planes, Spheres, Triangles
 
 
+def _checked_color(name, value):
+    """Three floats from a colour or one number for all three; SceneError where one is negative or not finite."""
+    value = np.broadcast_to(np.asarray(value, np.float64), (3,))
+    if not np.isfinite(value).all() or (value < 0.0).any():
+        raise SceneError(f"{name} is {tuple(value.tolist())}; it must be finite and not negative")
+    return tuple(value.tolist())
+
+
 class LightKind(IntEnum):
     POINT = 0  # falls off with the square of the distance
     CONSTANT = 1  # positional, without fall-off, as in NFF
@@ -46,6 +54,8 @@ class Light:
     def sun(cls, towards, strength, color=(1.0, 1.0, 1.0)):
         """Parallel light from the direction `towards` (3,); `strength` is its irradiance in watts per square metre."""
         direction = np.asarray(towards, np.float64)
+        if not np.linalg.norm(direction) > 0.0:
+            raise SceneError(f"sun: the direction {tuple(towards)} has no length")
         return cls(
             LightKind.SUN,
             tuple(direction / np.linalg.norm(direction)),
@@ -79,12 +89,11 @@ class Material:
 
     def __post_init__(self):
         for name in ("diffuse", "reflect", "transmit", "glow", "absorption", "highlight"):
-            value = np.broadcast_to(np.asarray(getattr(self, name), np.float64), (3,))
-            if not np.isfinite(value).all() or (value < 0.0).any():
-                raise SceneError(f"material: {name} is {tuple(value)}; it must be finite and not negative")
-            object.__setattr__(self, name, tuple(float(x) for x in value))
+            object.__setattr__(self, name, _checked_color(f"material: {name}", getattr(self, name)))
         if not (np.isfinite(self.ior) and self.ior > 0.0):
             raise SceneError(f"material: the index of refraction is {self.ior}; it must be positive")
+        if not (np.isfinite(self.shine) and self.shine >= 0.0):
+            raise SceneError(f"material: shine is {self.shine}; it must be finite and not negative")
 
     @classmethod
     def mirror(cls, color=(1.0, 1.0, 1.0)):
@@ -136,6 +145,9 @@ class World:
 
     color: tuple = (0.05, 0.05, 0.05)
     image: int = -1
+
+    def __post_init__(self):
+        object.__setattr__(self, "color", _checked_color("world: color", self.color))
 
 
 @dataclass(frozen=True)

@@ -1,18 +1,24 @@
 """Scene, film and device together: load a scene, start a picture, draw it step by step."""
 
 import time
+from contextlib import closing
 from dataclasses import dataclass
 
 import numpy as np
 
 from . import layout, shader_source
 from .errors import ConicError, SceneError
-from .film import Film
+from .film import UNENDED_ALPHA, Film
 from .packing import pack
 from .settings import Settings
 
 #: Surfaces that a tinted shadow ray may pass before it counts as blocked.
 _TINTED_SHADOW_SURFACES = 32
+
+_UNENDED = (
+    "some pixels are too dark: this driver gives up samples that take very many steps; use a GPU, fewer lights, "
+    "a lower maximum depth or a higher cut-off"
+)
 
 
 @dataclass(frozen=True)
@@ -67,6 +73,7 @@ class Session:
         constants = self._packed.constants | {
             "PATH_STACK_SIZE": self.settings.stack_size,
             "TINTED_SHADOW_SURFACES": _TINTED_SHADOW_SURFACES,
+            "UNENDED_ALPHA": UNENDED_ALPHA,
         }
         outputs = ("out_color", "out_rays", "out_dropped") if self._counts else ("out_color",)
         return shader_source.program("trace_frag.glsl", features, constants, outputs)
@@ -123,7 +130,10 @@ class Session:
 
     def pixels(self):
         """The picture so far, see `Film.pixels`."""
-        return self._film.pixels()
+        pixels = self._film.pixels()
+        if self._film.unended and _UNENDED not in self.warnings:
+            self.warnings.append(_UNENDED)
+        return pixels
 
     def statistics(self):
         """Counts, seconds and bytes, as the command line writes them; `rays` only when they were counted."""
@@ -236,7 +246,8 @@ def render(scene, width, height, settings=None, *, device=None, progress=None, c
     if device is None:
         from .devices.headless import HeadlessDevice
 
-        device = HeadlessDevice()
+        with closing(HeadlessDevice()) as own:
+            return render(scene, width, height, settings, device=own, progress=progress, cancelled=cancelled)
     session = Session(device)
     try:
         session.load(scene, settings or Settings())

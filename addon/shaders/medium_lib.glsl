@@ -14,22 +14,22 @@ ivec4 medium_enter(ivec4 media, int material)
   return ivec4(material, media.xyz);
 }
 
-/* Without the innermost mention of this body; bodies that overlap may be left in any order. */
+/* Without the innermost mention of this material; bodies that overlap may be left in any order. A body may be entered by one
+ * of its materials and left by another, a bottle by its label: what is not mentioned leaves the innermost body. */
 ivec4 medium_leave(ivec4 media, int material)
 {
-  if (media.x == material) {
-    return ivec4(media.yzw, MEDIUM_NONE);
+  if (media.x != material) {
+    if (media.y == material) {
+      return ivec4(media.x, media.zw, MEDIUM_NONE);
+    }
+    if (media.z == material) {
+      return ivec4(media.xy, media.w, MEDIUM_NONE);
+    }
+    if (media.w == material) {
+      return ivec4(media.xyz, MEDIUM_NONE);
+    }
   }
-  if (media.y == material) {
-    return ivec4(media.x, media.zw, MEDIUM_NONE);
-  }
-  if (media.z == material) {
-    return ivec4(media.xy, media.w, MEDIUM_NONE);
-  }
-  if (media.w == material) {
-    return ivec4(media.xyz, MEDIUM_NONE);
-  }
-  return media;
+  return ivec4(media.yzw, MEDIUM_NONE);
 }
 
 float medium_ior(ivec4 media)

@@ -97,7 +97,10 @@ void main()
   bool reflects = false;
   bool refracts = false;
 
-  while (true) {
+  /* A driver may end a loop for good after so many turns, as Mesa's software rasteriser does after 65535 in all: what has not
+   * ended by itself is told. The condition always holds; without one the compiler would take every end for the loop's own. */
+  bool ended = false;
+  while (frame.max_depth > 0.0) {
     bool is_shadow = light >= 0;
     Ray ray = path.ray;
     float limit = path.t_max;
@@ -250,12 +253,13 @@ void main()
     }
     if (path_ends) {
       if (stacked == 0) {
+        ended = true;
         break;
       }
       path = stack[--stacked];
     }
   }
-  out_color = vec4(radiance, alpha);
+  out_color = vec4(radiance, ended ? alpha : UNENDED_ALPHA);
 #ifdef COUNT_RAYS
   out_rays = vec4(eye_hits, reflected, refracted, shadows);
   out_dropped = vec4(dropped, 1.0, 0.0, 0.0);

@@ -24,6 +24,9 @@ class Lights:
         """Add the light of a Blender object that stands in the world by `matrix` (4, 4)."""
         light = obj.data
         color = np.multiply(light_factor(light), self._strength(light))
+        if not np.isfinite([*matrix.ravel(), light.energy, *color]).all():
+            self._reports.warn(f"light {obj.name!r} has a strength or a place that is not finite and gives no light")
+            return
         position = tuple(float(x) for x in matrix[:3, 3])
         if light.type == "SUN":
             towards = matrix[:3, 2]

@@ -57,6 +57,11 @@ class HeadlessDevice:
         with self._context:
             self._triangle = self._context.buffer(np.array(FULL_SCREEN_TRIANGLE, np.float32).tobytes())
 
+    def close(self):
+        """Give back the context and everything that was made in it; the device cannot be used any more."""
+        self._programs = {}
+        self._context.release()
+
     @_in_context
     def texture(self, texels):
         height, width, _ = texels.shape

@@ -176,7 +176,7 @@ def any_perpendicular(axis):
     return np.stack([1.0 + sign * x * x * a, sign * x * y * a, -sign * x], axis=-1)
 
 
-def perpendicular_part(vector, axis, fallback=None):
+def perpendicular_part(vector, axis):
     """The unit vectors (n, 3) of `vector` made perpendicular to the unit vectors `axis`; any one where they are
     parallel."""
     part = vector - np.sum(vector * axis, axis=-1, keepdims=True) * axis
