@@ -217,7 +217,8 @@ MATERIAL = _record(
     ("highlight", "vec3", "weight of the lights' Phong highlight"),
     ("shine", "float", "Phong exponent of the highlight"),
     ("fresnel", "float", "1: mirror and transmission shares follow Fresnel; 0: constant shares"),
-    ("unused", "vec3", ""),
+    ("bounds_body", "float", "1: where it transmits it is the border of a medium; 0: a single sheet"),
+    ("unused", "vec2", ""),
 )
 LIGHT = _record(
     "light",
@@ -225,7 +226,7 @@ LIGHT = _record(
     ("position", "vec3", "position; for a sun the unit direction towards it"),
     ("kind", "int", "LIGHT_POINT, LIGHT_CONSTANT or LIGHT_SUN"),
     ("color", "vec3", "radiance of a white diffuse surface facing it, at distance 1 where it falls off"),
-    ("unused", "float", ""),
+    ("shadow", "float", "1: what stands before it casts a shadow"),
 )
 IMAGE = _record(
     "image",

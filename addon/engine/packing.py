@@ -12,8 +12,9 @@ import numpy as np
 
 from . import bvh, layout
 from .errors import SceneError
-from .primitives import BY_KIND, Planes, Similarity
-from .scene import EXTENSIONS, INTERPOLATIONS, LightKind, Material
+from .image_packing import pack_images
+from .primitives import BY_KIND, Planes, Similarity, invertible
+from .scene import LightKind, Material
 
 _INSTANCE = layout.KINDS.index("instance")
 
@@ -21,8 +22,6 @@ _INSTANCE = layout.KINDS.index("instance")
 #: with a primitive rounds by. The shader adds the same for the ray's origin.
 _BOX_PADDING = 2.0**-21
 _BOX_PADDING_ABSOLUTE = 1e-20
-#: Volume of the box of an instance's unit axes below which float32 cannot invert its matrix.
-_SINGULAR = 1e-6
 
 
 @dataclass
@@ -72,17 +71,13 @@ def _check_matrices(scene):
     """Raise SceneError where the camera or an instance has a matrix that is not finite or cannot be inverted, or the
     camera's window is empty."""
     camera = np.asarray(scene.camera.matrix, np.float64)
-    if not np.isfinite(camera).all() or abs(np.linalg.det(camera[:3, :3])) < _SINGULAR:
+    if not invertible(camera[None])[0]:
         raise SceneError("the camera's matrix is not finite or not one of three axes of length 1")
     left, right, bottom, top = scene.camera.window
     if not np.isfinite(scene.camera.window).all() or left == right or bottom == top:
         raise SceneError(f"the camera's window {tuple(scene.camera.window)} has no width or no height")
     matrices = np.array([instance.matrix for instance in scene.instances], np.float64).reshape(-1, 4, 4)
-    bad = ~np.isfinite(matrices).all(axis=(1, 2))
-    linear = np.where(bad[:, None, None], 0.0, matrices[:, :3, :3])
-    # Relative to its columns' lengths, so that no scale is too small, but columns in one plane are found.
-    lengths = np.linalg.norm(linear, axis=1)
-    bad |= np.abs(np.linalg.det(linear / np.where(lengths > 0.0, lengths, 1.0)[:, None, :])) < _SINGULAR
+    bad = ~invertible(matrices)
     if bad.any():
         name = scene.instances[int(np.argmax(bad))].name
         raise SceneError(f"instance {name!r} has a scale of 0, axes in one plane or a matrix that is not finite")
@@ -90,16 +85,31 @@ def _check_matrices(scene):
 
 def scene_origin(scene):
     """The point (3,) that positions are taken relative to: the camera's, rounded to a grid much coarser than the
-    scene, so that it is exactly 0 for scenes around 0 and stays put while the camera moves."""
+    distances to what is near it. It is exactly 0 for scenes around 0, stays put while the camera moves, and does not
+    mind single things that lie far off."""
     eye = np.asarray(scene.camera.matrix, np.float64)[:3, 3]
-    corners = [eye]
-    for _, part in scene.shapes.kinds():
-        lower, upper = part.bounds()
-        corners += [lower.min(axis=0), upper.max(axis=0)]
-    corners += [np.asarray(instance.matrix, np.float64)[:3, 3] for instance in scene.instances[:1000]]
-    extent = float(np.ptp(np.stack(corners), axis=0).max())
-    grid = 2.0 ** (np.ceil(np.log2(max(extent, 1e-30))) + 2.0)
+    places = _sampled_places(scene)
+    if not len(places):
+        return np.zeros(3)
+    distance = float(np.quantile(np.linalg.norm(places - eye, axis=1), 0.25, method="lower"))
+    grid = 2.0 ** (np.ceil(np.log2(max(distance, 1e-30))) + 3.0)
     return np.round(eye / grid) * grid
+
+
+def _sampled_places(scene, most=1000):
+    """Where things are, (n, 3): the middle of at most `most` primitives of a kind, the origin of as many instances."""
+    places = []
+    for _, part in scene.shapes.kinds():
+        lower, upper = part.take(_spread(len(part), most)).bounds()
+        places.append((lower + upper) / 2.0)
+    picked = [scene.instances[i].matrix for i in _spread(len(scene.instances), most)]
+    places.append(np.array(picked, np.float64).reshape(-1, 4, 4)[:, :3, 3])
+    return np.concatenate(places)
+
+
+def _spread(count, most):
+    """At most `most` indices below `count`, evenly spread."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.int64))
 
 
 def _distinct_geometries(scene):
@@ -166,6 +176,7 @@ class _Packer:
             plane_surface=planes[1],
             image=images,
         )
+        self._warn_of_darkness()
         self.frame |= {
             "light_count": len(self.scene.lights),
             "plane_count": len(planes[0]),
@@ -241,13 +252,12 @@ class _Packer:
         return np.cumsum(sizes)[:-1]
 
     def _nodes(self, top):
-        starts = self._node_starts(top)
-        bases = dict.fromkeys(range(len(BY_KIND)), 0)
+        bases, kinds = np.zeros(len(BY_KIND), np.int64), np.arange(len(BY_KIND))
         nodes = []
         if top is not None:
-            nodes.append(_node_records(top, 0, {0: 0}, {0: _INSTANCE}))
-        for start, geometry in zip(starts, self.trees, strict=True):
-            nodes.append(_node_records(geometry.tree, int(start), dict(bases), {label: label for label in bases}))
+            nodes.append(_node_records(top, 0, np.zeros(1, np.int64), np.array([_INSTANCE])))
+        for start, geometry in zip(self._node_starts(top), self.trees, strict=True):
+            nodes.append(_node_records(geometry.tree, start, bases, kinds))
             for label, (hit, _) in geometry.records.items():
                 bases[label] += len(hit)
         self.texels["nodes"] = _texels(np.concatenate(nodes) if nodes else layout.NODE.zeros(1))
@@ -304,31 +314,27 @@ class _Packer:
         records = layout.LIGHT.zeros(len(self.scene.lights))
         for record, light in zip(records, self.scene.lights, strict=True):
             offset = 0.0 if light.kind == LightKind.SUN else self.origin
-            record["position"], record["kind"], record["color"] = (
-                np.subtract(light.position, offset),
-                light.kind,
-                light.color,
-            )
+            record["position"] = np.subtract(light.position, offset)
+            record["kind"], record["color"], record["shadow"] = light.kind, light.color, light.shadow
         if not all(np.isfinite(records[name]).all() for name in ("position", "color")):
             raise SceneError("a light has a position or colour that is not finite")
         return records
 
     def _images(self):
         """Image records; their texels go in the texture `images`, reduced where they would not fit."""
-        images = self.scene.images
-        records = layout.IMAGE.zeros(len(images))
-        if not images:
-            return records
-        pixels = _reduced(
-            [image.pixels for image in images], self.limit, [image.name for image in images], self.warnings
-        )
-        starts = np.cumsum([0, *(p.shape[0] * p.shape[1] for p in pixels)])
-        records["first"], records["first_high"] = layout.split_index(starts[:-1])
-        records["height"], records["width"] = np.array([p.shape[:2] for p in pixels]).T
-        records["interpolation"] = [INTERPOLATIONS.index(image.interpolation) for image in images]
-        records["extension"] = [EXTENSIONS.index(image.extension) for image in images]
-        self.texels["images"] = np.concatenate([p.reshape(-1, 4) for p in pixels])
+        records, texels, warnings = pack_images(self.scene.images, self.limit)
+        if len(texels):
+            self.texels["images"] = texels
+        self.warnings += warnings
         return records
+
+    def _warn_of_darkness(self):
+        diffuse = any(max(material.diffuse) > 0.0 for material in self.materials)
+        if diffuse and not self.scene.lights and (self.trees or self.scene.planes):
+            self.warnings.append(
+                "the scene has no light: the sky and what glows are seen but light nothing, so that other surfaces are "
+                "black; add a light"
+            )
 
     # The whole
 
@@ -389,31 +395,22 @@ def _texels(records):
 
 
 def _node_records(tree, node_start, primitive_starts, kinds):
-    """GPU nodes of a tree whose nodes begin at `node_start` and whose primitives of each label begin at a start of
-    their own."""
-    labels = np.arange(max(primitive_starts) + 1)
-    starts = np.array([primitive_starts.get(int(label), 0) for label in labels], np.int64)
-    numbers = np.array([kinds.get(int(label), 0) for label in labels], np.int64)
+    """GPU nodes of a tree whose nodes begin at `node_start`. By label: where its primitives begin, which kind it is."""
     label = np.maximum(tree.label, 0)
-    first = np.where(tree.is_leaf, tree.child + starts[label], np.maximum(tree.child, 0) + node_start)
+    first = np.where(tree.is_leaf, tree.child + primitive_starts[label], np.maximum(tree.child, 0) + node_start)
     low, high = layout.split_index(first)
-    leaf = layout.pack_leaf(np.where(tree.is_leaf, numbers[label], 0), tree.count, high)
+    leaf = layout.pack_leaf(np.where(tree.is_leaf, kinds[label], 0), tree.count, high)
     boxes = tree.boxes.astype(np.float64)
     padding = np.abs(boxes).max(axis=(2, 3))[:, :, None] * _BOX_PADDING + _BOX_PADDING_ABSOLUTE
-    lower = np.maximum(boxes[:, :, 0] - padding, -bvh_far())
-    upper = np.minimum(boxes[:, :, 1] + padding, bvh_far())
+    lower = np.maximum(boxes[:, :, 0] - padding, -bvh.FAR)
+    upper = np.minimum(boxes[:, :, 1] + padding, bvh.FAR)
     empty = ~tree.is_leaf & ~tree.is_inner
-    lower[empty] = upper[empty] = bvh_far()
+    lower[empty] = upper[empty] = bvh.FAR
     records = layout.NODE.zeros(len(tree))
     for child in (0, 1):
         records[f"lower_{child}"], records[f"upper_{child}"] = lower[:, child], upper[:, child]
         records[f"first_{child}"], records[f"leaf_{child}"] = low[:, child], leaf[:, child]
     return records
-
-
-def bvh_far():
-    """Coordinate of the point box of an empty child: no ray reaches it within the lengths that the shader knows."""
-    return float(np.finfo(np.float32).max)
 
 
 def _moved_boxes(bounds, matrices):
@@ -423,30 +420,3 @@ def _moved_boxes(bounds, matrices):
     moved = np.einsum("nij,nj->ni", matrices[:, :3, :3], center) + matrices[:, :3, 3]
     reach = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), half)
     return moved - reach, moved + reach
-
-
-def _reduced(pixels, limit, names, warnings):
-    """The images, the largest halved again and again until all their texels fit `limit`; each halving is reported
-    once."""
-    pixels, reduced = list(pixels), {}
-    while sum(p.shape[0] * p.shape[1] for p in pixels) > limit:
-        largest = max(range(len(pixels)), key=lambda i: pixels[i].size)
-        reduced.setdefault(largest, pixels[largest].shape[:2])
-        pixels[largest] = _halved(pixels[largest])
-    for i, (height, width) in reduced.items():
-        warnings.append(
-            f"image {names[i]!r} of {width} x {height} is too large for this device and was reduced to "
-            f"{pixels[i].shape[1]} x {pixels[i].shape[0]}"
-        )
-    return pixels
-
-
-def _halved(pixels):
-    """Half as many rows and columns, by averages; an odd last row or column goes into its neighbour."""
-    for axis in (0, 1):
-        size = pixels.shape[axis]
-        if size > 1:
-            starts = np.arange(0, size - size % 2, 2)
-            counts = np.diff([*starts, size]).reshape((-1, 1, 1) if axis == 0 else (1, -1, 1))
-            pixels = np.add.reduceat(pixels, starts, axis=axis) / counts.astype(np.float32)
-    return pixels

@@ -38,29 +38,32 @@ class Light:
     kind: LightKind
     position: tuple  # POINT, CONSTANT: where it is. SUN: direction towards it
     color: tuple
+    shadow: bool = True  # whether what stands before it casts a shadow
 
     @classmethod
-    def point(cls, position, watts, color=(1.0, 1.0, 1.0)):
+    def point(cls, position, watts, color=(1.0, 1.0, 1.0), *, shadow=True):
         """A point light of `watts` as Blender counts them: watts / 4 pi per steradian; a white diffuse surface returns
         the irradiance divided by pi."""
-        return cls(LightKind.POINT, tuple(position), tuple(np.multiply(color, watts / (4.0 * np.pi**2))))
+        return cls(LightKind.POINT, tuple(position), _scaled(color, watts / (4.0 * np.pi**2)), shadow)
 
     @classmethod
-    def constant(cls, position, color=(1.0, 1.0, 1.0)):
+    def constant(cls, position, color=(1.0, 1.0, 1.0), *, shadow=True):
         """A positional light without fall-off, as the NFF databases have it."""
-        return cls(LightKind.CONSTANT, tuple(position), tuple(color))
+        return cls(LightKind.CONSTANT, tuple(position), _scaled(color, 1.0), shadow)
 
     @classmethod
-    def sun(cls, towards, strength, color=(1.0, 1.0, 1.0)):
+    def sun(cls, towards, strength, color=(1.0, 1.0, 1.0), *, shadow=True):
         """Parallel light from the direction `towards` (3,); `strength` is its irradiance in watts per square metre."""
         direction = np.asarray(towards, np.float64)
         if not np.linalg.norm(direction) > 0.0:
             raise SceneError(f"sun: the direction {tuple(towards)} has no length")
-        return cls(
-            LightKind.SUN,
-            tuple(direction / np.linalg.norm(direction)),
-            tuple(np.multiply(color, strength / np.pi)),
-        )
+        direction = direction / np.linalg.norm(direction)
+        return cls(LightKind.SUN, tuple(direction), _scaled(color, strength / np.pi), shadow)
+
+
+def _scaled(color, factor):
+    """An RGB colour, given as three numbers or one, times a factor."""
+    return tuple(float(x) for x in np.broadcast_to(np.multiply(color, factor), (3,)))
 
 
 @dataclass(frozen=True)
@@ -86,6 +89,7 @@ class Material:
     reflect_image: int = -1
     transmit_image: int = -1
     glow_image: int = -1
+    bounds_body: bool = True  # False: a single sheet, which bends light but is no border of a medium
 
     def __post_init__(self):
         for name in ("diffuse", "reflect", "transmit", "glow", "absorption", "highlight"):
@@ -184,8 +188,9 @@ def _look_at_matrix(eye, target, up):
     back = eye - target
     right = np.cross(up, back)
     if not np.isfinite(right).all() or not np.linalg.norm(right) > 1e-12 * np.linalg.norm(up) * np.linalg.norm(back):
+        eye, target, up = (tuple(float(x) for x in v) for v in (eye, target, up))
         raise SceneError(
-            f"camera: from {tuple(eye)} to {tuple(target)} with up {tuple(up)} gives no view; the two points must "
+            f"camera: from {eye} to {target} with up {up} gives no view; the two points must "
             "differ and up must not lie along the view"
         )
     back, right = back / np.linalg.norm(back), right / np.linalg.norm(right)

@@ -63,6 +63,7 @@ class Session:
         self._packed.textures = {}  # they have been copied
         with self._timed("compile"):
             self._program = self.device.program(self._source())
+        self._drawn = False
 
     def _source(self):
         features = set(self._packed.features)
@@ -82,11 +83,7 @@ class Session:
         """Begin a picture of `width` x `height` pixels, or the part `border` (x, y, width, height) of it."""
         if self._packed is None:
             raise SceneError("no scene is loaded")
-        if width < 1 or height < 1 or (border and (border[2] < 1 or border[3] < 1)):
-            raise SceneError(f"a picture of {width} x {height} pixels has no pixels")
-        limit = self.device.max_texture_size - 1
-        if max(width, height) > limit:
-            raise SceneError(f"a picture of {width} x {height} pixels is larger than this device's {limit} x {limit}")
+        _check_size(width, height, border, self.device.max_texture_size - self.settings.corner_rays)
         self.camera = camera or self.camera
         if self._film:
             self._film.release()
@@ -100,8 +97,10 @@ class Session:
             attachments=3 if self._counts else 1,
         )
         self._reported_drops = False
-        with self._timed("compile"):  # drivers leave much of their work to the first draw: make it a small one
-            self._draw_outside()
+        if not self._drawn:  # drivers leave much of their work to the first draw: make it a small one
+            with self._timed("compile"):
+                self._draw_outside()
+            self._drawn = True
 
     def step(self, seconds):
         """Draw tiles for about `seconds`; True while there is more to draw."""
@@ -218,6 +217,17 @@ class Session:
 
     def _timed(self, stage):
         return _Timer(self._seconds, stage)
+
+
+def _check_size(width, height, border, limit):
+    """Raise SceneError for a picture without pixels, a border outside of it, or more than `limit` pixels a side."""
+    if width < 1 or height < 1:
+        raise SceneError(f"a picture of {width} x {height} pixels has no pixels")
+    x, y, columns, rows = border or (0, 0, width, height)
+    if columns < 1 or rows < 1 or x < 0 or y < 0 or x + columns > width or y + rows > height:
+        raise SceneError(f"the border {(x, y, columns, rows)} is not within a picture of {width} x {height} pixels")
+    if max(columns, rows) > limit:
+        raise SceneError(f"a picture of {columns} x {rows} pixels is larger than this device's {limit} x {limit}")
 
 
 class _Timer:

@@ -4,6 +4,6 @@ from .build import build
 from .cost import sah_cost, statistics
 from .refit import refit
 from .sweep import sweep_build
-from .tree import MAX_DEPTH, Bvh
+from .tree import FAR, MAX_DEPTH, Bvh
 
-__all__ = ["MAX_DEPTH", "Bvh", "build", "refit", "sah_cost", "statistics", "sweep_build"]
+__all__ = ["FAR", "MAX_DEPTH", "Bvh", "build", "refit", "sah_cost", "statistics", "sweep_build"]

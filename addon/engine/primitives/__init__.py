@@ -1,7 +1,7 @@
 """The kinds of primitives, a file each. `BY_KIND` is in the order of the leaf labels (`layout.KINDS`)."""
 
 from ..layout import KINDS
-from .base import Primitives, Similarity
+from .base import Primitives, Similarity, invertible
 from .cone import Cones
 from .cylinder import Cylinders
 from .disc import Discs
@@ -24,4 +24,5 @@ __all__ = [
     "Similarity",
     "Spheres",
     "Triangles",
+    "invertible",
 ]

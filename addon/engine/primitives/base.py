@@ -165,6 +165,22 @@ class Similarity:
         return directions @ self.rotation.T
 
 
+#: Volume of the box of a matrix's unit axes below which float32 cannot invert it.
+_SINGULAR = 1e-6
+
+
+def invertible(matrices):
+    """Which of affine matrices (n, 4, 4) are finite and can be inverted in float32: (n,) bool.
+
+    Each axis counts by its direction, so that no scale is too small, but axes in one plane are found.
+    """
+    matrices = np.asarray(matrices, np.float64)
+    finite = np.isfinite(matrices).all(axis=(1, 2))
+    linear = np.where(finite[:, None, None], matrices[:, :3, :3], 0.0)
+    lengths = np.linalg.norm(linear, axis=1)
+    return np.abs(np.linalg.det(linear / np.where(lengths > 0.0, lengths, 1.0)[:, None, :])) >= _SINGULAR
+
+
 def any_perpendicular(axis):
     """A unit vector (n, 3) perpendicular to each unit vector of `axis` (n, 3), continuous almost everywhere.
 

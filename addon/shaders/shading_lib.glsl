@@ -1,0 +1,204 @@
+/* What happens where a ray meets a surface: paper 2.4, step 2. Light that is given off, the lights' shadow rays, and the two
+ * rays that go on from there. */
+#include "bvh_lib.glsl"
+#include "material_lib.glsl"
+#include "medium_lib.glsl"
+#include "optics_lib.glsl"
+#include "light_lib.glsl"
+
+/* A ray of the path and what it stands for. */
+struct Path {
+  Ray ray;
+  float t_max;
+  vec3 weight; /* its share of the pixel */
+  int depth;   /* the eye ray is 1 */
+  ivec4 media; /* the bodies it is inside of */
+  bool direct; /* straight from the eye, through nothing but surfaces that do not bend it */
+};
+
+/* A surface being lit. */
+struct Lit {
+  Surface surface;
+  vec3 normal; /* shading normal on the side of the path ray */
+  vec3 view;   /* direction of the path ray */
+  vec3 diffuse;
+  vec3 highlight;
+  float shine;
+  ivec4 media; /* around the lit side */
+};
+
+/* A ray towards a light. */
+struct Shadow {
+  Ray ray;
+  float t_max;
+  vec3 contribution; /* to the pixel where nothing is in the way */
+  vec3 tint;         /* what the surfaces and bodies that it has passed leave of it */
+  ivec4 media;
+  int surfaces; /* passed so far */
+};
+
+/* The rays that go on from a surface, each of them if its `..s` holds. */
+struct Scattered {
+  bool reflects;
+  Path reflected;
+  bool refracts;
+  Path refracted;
+};
+
+/* What the light that reaches a lit surface from `direction` adds to the pixel. */
+vec3 shading_lit_by(Lit lit, vec3 radiance, vec3 direction, float cosine)
+{
+  vec3 share = lit.diffuse * cosine;
+  float alignment = max(dot(optics_mirror(lit.view, lit.normal), direction), 0.0);
+  if (optics_largest(lit.highlight) > 0.0 && alignment > 0.0) {
+    share += lit.highlight * pow(alignment, lit.shine);
+  }
+  return radiance * share;
+}
+
+/* The shadow ray of the next light from `index` on that faces the surface and casts shadows; `index` becomes the number of
+ * lights when there is none. Lights without shadows are added to `radiance` at once. */
+Shadow shading_next_shadow(inout int index, Lit lit, inout vec3 radiance)
+{
+  int count = int(frame.light_count);
+  for (; index < count; index++) {
+    Light light = read_light(index);
+    vec3 direction;
+    float t_max;
+    vec3 arriving = light_at(light, lit.surface.position, direction, t_max);
+    float cosine = dot(lit.normal, direction);
+    if (cosine <= 0.0) {
+      continue;
+    }
+    vec3 contribution = shading_lit_by(lit, arriving, direction, cosine);
+    if (light.shadow < 0.5) {
+      radiance += contribution;
+      continue;
+    }
+    Ray ray = Ray(ray_spawn(lit.surface, direction), direction);
+    if (light.kind != LIGHT_SUN) { /* from where the ray starts, not from the surface */
+      vec3 to_light = light.position - ray.origin;
+      t_max = length(to_light);
+      ray.direction = to_light / max(t_max, 1e-30);
+    }
+    return Shadow(ray, t_max, contribution, vec3(1.0), lit.media, 0);
+  }
+  return Shadow(Ray(vec3(0.0), vec3(0.0, 0.0, 1.0)), 0.0, vec3(0.0), vec3(0.0), lit.media, 0);
+}
+
+/* What a shadow ray brings when nothing more stands before the light. */
+vec3 shading_arrived(Shadow shadow)
+{
+  vec3 light = shadow.contribution * shadow.tint;
+#ifdef HAS_ABSORPTION
+  light *= optics_absorb(medium_absorption(shadow.media), shadow.t_max);
+#endif
+  return light;
+}
+
+/* Take a shadow ray through the surface that it has hit; false when what is left is not worth following. */
+bool shading_pass(inout Shadow shadow, Hit hit)
+{
+  Surface surface = bvh_surface(hit, shadow.ray);
+  Material material = material_at(surface.material, surface.uv);
+  bool leaves = dot(shadow.ray.direction, surface.geometric_normal) > 0.0;
+  shadow.tint *= material.transmit;
+#ifdef HAS_ABSORPTION
+  bool inside = leaves && material.bounds_body > 0.5;
+  shadow.tint *= optics_absorb(inside ? material.absorption : medium_absorption(shadow.media), hit.t);
+  if (material.bounds_body > 0.5) {
+    shadow.media = leaves ? medium_leave(shadow.media, surface.material) : medium_enter(shadow.media, surface.material);
+  }
+#endif
+  shadow.ray.origin = ray_spawn(surface, shadow.ray.direction);
+  shadow.t_max -= hit.t;
+  shadow.surfaces++;
+  return optics_largest(shadow.tint) > frame.weight_cutoff && shadow.surfaces <= TINTED_SHADOW_SURFACES;
+}
+
+/* The reflected ray. An interpolated normal may bend it into the surface: then it grazes. */
+Ray shading_reflected(Surface surface, vec3 direction, vec3 normal, vec3 face)
+{
+  vec3 mirrored = optics_mirror(direction, normal);
+  float outside = dot(mirrored, face);
+  if (outside <= 0.0) {
+    mirrored = normalize(mirrored + (1e-3 - outside) * face);
+  }
+  return Ray(ray_spawn(surface, mirrored), mirrored);
+}
+
+/* The refracted ray, likewise kept beyond the surface. */
+Ray shading_refracted(Surface surface, vec3 bent, vec3 face)
+{
+  float outside = dot(bent, face);
+  if (outside >= 0.0) {
+    bent = normalize(bent - (1e-3 + outside) * face);
+  }
+  return Ray(ray_spawn(surface, bent), bent);
+}
+
+/* Where a path meets a surface: what it gives off towards the eye is added to `radiance`, `lit` is what the lights are to
+ * light, and the result what goes on. */
+Scattered shading_scatter(Path path, Hit hit, inout vec3 radiance, out Lit lit)
+{
+  vec3 incoming = path.ray.direction;
+  Surface surface = bvh_surface(hit, path.ray);
+  Material material = material_at(surface.material, surface.uv);
+  bool entering = dot(incoming, surface.geometric_normal) < 0.0;
+  vec3 normal = entering ? surface.shading_normal : -surface.shading_normal;
+  vec3 face = entering ? surface.geometric_normal : -surface.geometric_normal;
+  if (dot(normal, incoming) >= 0.0) { /* an interpolated normal that looks away: the surface's own is the truth */
+    normal = face;
+  }
+  bool transmits = optics_largest(material.transmit) > 0.0;
+  bool borders = transmits && material.bounds_body > 0.5; /* on a medium; the back of an opaque surface bounds no body */
+
+  vec3 weight = path.weight;
+#ifdef HAS_ABSORPTION
+  /* A ray that leaves a body has been inside it, even if it was not seen entering: the eye was inside. */
+  weight *= optics_absorb(borders && !entering ? material.absorption : medium_absorption(path.media), hit.t);
+#endif
+  radiance += weight * material.glow;
+
+  ivec4 beyond = path.media;
+  if (borders) {
+    beyond = entering ? medium_enter(path.media, surface.material) : medium_leave(path.media, surface.material);
+  }
+  float eta = 1.0 / material.ior; /* a coat of clear varnish is on both sides */
+  if (transmits) {
+    eta = entering ? medium_ior(path.media) / material.ior : material.ior / medium_ior(beyond);
+  }
+  float cos_i = min(-dot(normal, incoming), 1.0);
+  float cos_t;
+  float fresnel = optics_fresnel(cos_i, eta, cos_t);
+  bool total = transmits && cos_t == 0.0;
+  vec3 mirror = material.reflect;
+  vec3 through = total ? vec3(0.0) : material.transmit;
+  vec3 diffuse = material.diffuse;
+  if (material.fresnel > 0.5) {
+    mirror *= fresnel;
+    through *= 1.0 - fresnel;
+    diffuse *= 1.0 - fresnel * optics_largest(material.reflect);
+  }
+  else if (total) {
+    mirror += material.transmit;
+  }
+  lit = Lit(surface, normal, incoming, weight * diffuse, weight * material.highlight, material.shine, path.media);
+
+  Scattered scattered = Scattered(false, path, false, path);
+  mirror *= weight;
+  through *= weight;
+  if (path.depth < int(frame.max_depth)) {
+    scattered.reflects = optics_largest(mirror) > frame.weight_cutoff;
+    scattered.refracts = optics_largest(through) > frame.weight_cutoff;
+  }
+  if (scattered.reflects) {
+    Ray ray = shading_reflected(surface, incoming, normal, face);
+    scattered.reflected = Path(ray, 1e30, mirror, path.depth + 1, path.media, false);
+  }
+  if (scattered.refracts) {
+    Ray ray = shading_refracted(surface, optics_refract(incoming, normal, cos_i, cos_t, eta), face);
+    scattered.refracted = Path(ray, 1e30, through, path.depth + 1, beyond, path.direct && eta == 1.0);
+  }
+  return scattered;
+}
