@@ -387,3 +387,15 @@ def test_samples_that_a_driver_gives_up_are_told(device):
     assert error < 1e-3 or any("gives up" in warning for warning in at_once.warnings)
     if "llvmpipe" in device.name:
         assert error > 1e-3, "too little work for what this test is about"
+
+
+def test_single_sheet_is_no_border_of_a_medium(device):
+    """Glass behind a pane without thickness is as much glass as without it; the pane takes its own share."""
+    absorption = np.array((0.1, 0.3, 0.5))
+    ball = Material(diffuse=0.0, transmit=1.0, ior=1.5, absorption=tuple(absorption))
+    pane = Material(diffuse=0.0, transmit=1.0, ior=1.5, absorption=(9.0, 9.0, 9.0), bounds_body=False)
+    scene = Scene(world=World((1.0, 1.0, 1.0)), materials=[ball, pane])
+    scene.add_spheres((0.0, 0.0, 0.0), 1.0, 0)
+    scene.add_discs((0.0, -3.0, 0.0), (0.0, -1.0, 0.0), 2.0, 1)
+    color = along(device, scene, (0.0, -5.0, 0.0), (0.0, 1.0, 0.0), Settings(max_depth=8, weight_cutoff=0.0))
+    assert color == pytest.approx((1.0 - 0.04) ** 3 * np.exp(-2.0 * absorption), rel=1e-4)

@@ -185,6 +185,24 @@ def test_shadow_of_an_absorbing_plate(device, tinted):
     assert color == pytest.approx(through if tinted else 0.0, abs=1e-5)
 
 
+@pytest.mark.parametrize("shadow", [True, False])
+def test_light_without_shadow(device, shadow):
+    scene = Scene(world=World((0.0, 0.0, 0.0)), materials=[Material(diffuse=0.5)])
+    scene.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    scene.add_spheres((0.0, 0.0, 3.0), 1.0)
+    scene.add_light(Light.sun((0.0, 0.0, 1.0), np.pi, shadow=shadow))
+    color = along(device, scene, (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), Settings())
+    assert color == pytest.approx(0.0 if shadow else 0.5)
+
+
+def test_scene_without_light_says_so(device):
+    scene = Scene(camera=Camera.look_at((0.0, -3.0, 0.0), (0.0, 0.0, 0.0)), materials=[Material()])
+    assert not render(scene, 4, 4, device=device).warnings, "an empty scene is as it should be"
+    scene.add_spheres((0.0, 0.0, 0.0), 1.0)
+    (warning,) = render(scene, 4, 4, device=device).warnings
+    assert "add a light" in warning
+
+
 def test_light_within_an_absorbing_body(device):
     """What lies between the light and its body's border absorbs, and so does an outer body on the way to an inner."""
     inner, outer = (Material.glass(absorption=a) for a in ((0.1, 0.2, 0.4), (0.5, 0.2, 0.0)))
