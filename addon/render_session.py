@@ -3,6 +3,7 @@
 
 import os
 import time
+import traceback
 
 import bpy
 import gpu
@@ -81,15 +82,29 @@ def border_of(engine, render):
 def render_layer(engine, depsgraph):
     """Render the view layer of `depsgraph` for a bpy.types.RenderEngine.
 
-    What a user can put right is reported as an error, upon which Blender writes no picture and ends an
-    animation.
+    Whatever fails is reported as an error, upon which Blender writes no picture and ends an animation; without
+    it Blender would write a black one and go on.
     """
     try:
         LayerRender(engine, depsgraph).run()
     except gpu_thread.StoppedError:
         pass  # Blender knows
-    except ConicError as error:
-        engine.report({"ERROR"}, str(error))
+    except Exception as error:
+        if is_defect(error):
+            traceback.print_exception(error)
+        engine.report({"ERROR"}, sentence_of(error))
+
+
+def is_defect(error):
+    """Whether an exception is Conic's own fault, so that its traceback belongs in the console."""
+    return not isinstance(error, (ConicError, MemoryError))
+
+
+def sentence_of(error):
+    """What a user is told of an exception."""
+    if isinstance(error, MemoryError):
+        return "not enough memory for this scene"
+    return str(error) if not is_defect(error) else f"{type(error).__name__}: {str(error) or 'see the console'}"
 
 
 class LayerRender:

@@ -2,11 +2,12 @@
 """The rendered view in a 3D viewport: read the scene when it changed, then draw a little at every redraw."""
 
 import logging
+import traceback
 from dataclasses import replace
 
-from .engine import ConicError, Session
+from .engine import Session
 from .fingerprint import fingerprint
-from .render_session import new_device
+from .render_session import is_defect, new_device, sentence_of
 from .sync.camera import camera_of_view
 from .sync.scene_sync import sync_scene, sync_settings
 from .viewport_display import Display
@@ -62,8 +63,10 @@ class ViewportSession:
                 self.read(depsgraph, size, camera)
             if not self.error:
                 self.advance(size, self.engine.get_preview_pixel_size(depsgraph.scene), camera)
-        except ConicError as error:
-            self.error = str(error)
+        except Exception as error:  # a view that raises would do so at every redraw
+            self.error = sentence_of(error)
+            if is_defect(error):
+                self.report("ERROR", "".join(traceback.format_exception(error)))
         if self.error:
             self.engine.update_stats("Conic", self.error)
 
@@ -108,5 +111,5 @@ class ViewportSession:
             self.report("WARNING", warning)
         text = f"Sample {self.session.sample + 1}/{self.settings.samples}"
         if self.report.warnings:
-            text += f" | {self.report.warnings} warnings, see the console"
+            text += f" | {self.report.warnings} warning{'s' * (self.report.warnings > 1)}, see the console"
         self.engine.update_stats("Conic", text)

@@ -11,19 +11,25 @@ def camera_of_render(engine, depsgraph, width, height, *, camera=None, reports=N
     """The camera of a render of width x height pixels, the full frame without its border.
 
     `engine` (a RenderEngine) gives the eye of a stereo pair and its override; without one, the scene's camera is
-    used, or the object `camera`. Raises SceneError when there is none.
+    used, or the object `camera`. Raises SceneError when there is none, or it is an object of another type.
     """
     scene = depsgraph.scene_eval
     camera = camera or (engine and engine.camera_override) or scene.camera
-    if camera is None or camera.type != "CAMERA":
+    if camera is None:
         raise SceneError(
             f"scene {scene.name!r} has no camera; add one with Add > Camera, or choose one in the scene's settings"
+        )
+    if camera.type != "CAMERA":
+        kind = camera.type.replace("_", " ").lower()
+        raise SceneError(
+            f"scene {scene.name!r}: {camera.name!r} ({kind}) is set as its camera, but is not a camera; choose one in "
+            "the scene's settings"
         )
     camera = camera.evaluated_get(depsgraph)
     data = camera.data
     if data.type not in ("PERSP", "ORTHO") and reports is not None:
         kind = "panoramic" if data.type == "PANO" else data.type.lower()
-        reports.warn(f"camera {camera.name!r}: {kind} is not rendered, perspective is used instead")
+        reports.warn(f"camera {camera.name!r}: a {kind} camera is not rendered, perspective is used instead")
     if data.dof.use_dof and reports is not None:
         reports.warn(f"camera {camera.name!r}: depth of field is not rendered")
     render = scene.render

@@ -44,7 +44,7 @@ def _report_ignored(source, reader):
         if socket is not None and socket.enabled and (socket.is_linked or _is_set(socket)):
             used.append(socket.name)
     if used:
-        reader.warn(f"node {source.node.name!r}: {', '.join(used)} is not rendered")
+        reader.warn(f"node {source.node.name!r}: {', '.join(used)} {'is' if len(used) == 1 else 'are'} not rendered")
 
 
 def _is_set(socket):

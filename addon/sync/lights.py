@@ -33,20 +33,21 @@ class Lights:
             if not np.linalg.norm(towards) > 0.0:
                 self._reports.warn(f"light {obj.name!r} is scaled to zero and gives no light")
                 return
-            self._scene.add_light(Light.sun(towards, light.energy, color))
+            self._scene.add_light(Light.sun(towards, light.energy, color, shadow=light.use_shadow))
             self._note_soft(obj.name, light.angle)
             return
         self._report_kind(light, obj.name)
         watts = light.energy * (_AREA_AHEAD if light.type == "AREA" else 1.0)
-        self._scene.add_light(Light.point(position, watts, color))
+        self._scene.add_light(Light.point(position, watts, color, shadow=light.use_shadow))
         if light.type != "AREA":
             self._note_soft(obj.name, light.shadow_soft_size)
 
     def finish(self):
         """Report, in one message, the lights whose soft shadows are not drawn."""
         if self._soft:
-            others = f" and {len(self._soft) - 1} more" if len(self._soft) > 1 else ""
-            self._reports.info(f"light {self._soft[0]!r}{others}: the light's size is not rendered, shadows are sharp")
+            others = len(self._soft) - 1
+            whose = f" and {others} more: their" if others else ": its"
+            self._reports.info(f"light {self._soft[0]!r}{whose} size is not rendered, shadows are sharp")
 
     def _strength(self, light):
         """What the light's nodes multiply its energy by: colour times strength of an Emission."""

@@ -66,6 +66,14 @@ def _corner_vertex(mesh):
     return corners
 
 
+def is_closed_mesh(mesh):
+    """Whether the faces of an evaluated Blender mesh close around a body: each of their edges has two of them."""
+    edges = np.empty(len(mesh.loops), np.int32)
+    mesh.attributes[".corner_edge"].data.foreach_get("value", edges)
+    corners = np.bincount(edges)
+    return bool((corners[corners > 0] == 2).all())  # an edge without a face bounds nothing
+
+
 @dataclass(frozen=True)
 class MeshTriangles:
     """Triangles in object space, or None where the mesh has none, and how many were dropped for vertices that are not

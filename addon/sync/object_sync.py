@@ -7,9 +7,10 @@ import numpy as np
 
 from ..engine.scene import Geometry, Instance, Spheres
 from .keys import data_key, original_key
-from .meshes import read_triangles
+from .meshes import is_closed_mesh, read_triangles
 from .objects import Recognitions, taken_as
-from .placement import invertible, place_shape
+from .placement import place_shape, placeable
+from .shapes import Shape, is_closed_shape
 
 #: Types whose evaluated geometry comes along as meshes of their own, that show nothing, or that Blender draws itself.
 _SILENT = {
@@ -17,6 +18,8 @@ _SILENT = {
     *("EMPTY", "CAMERA", "ARMATURE", "LATTICE", "LIGHT_PROBE", "SPEAKER"),
     *("GPENCIL", "GREASEPENCIL"),
 }
+#: What else an object can be, as a report calls it.
+_NOT_RENDERED = {"CURVES": "hair curves", "VOLUME": "a volume"}
 _VISIBLE_TO = tuple(f"visible_{ray}" for ray in ("camera", "diffuse", "glossy", "transmission", "shadow"))
 
 
@@ -41,6 +44,7 @@ class ObjectSync:
         self._assets = {}
         self._of_object = {}
         self._geometries = {}
+        self._closed = {}
 
     def collect(self, depsgraph):
         """Go once through all objects and instances; none of them lives longer than its step, so values are copied."""
@@ -62,14 +66,16 @@ class ObjectSync:
                 asset.names.append(obj.name)
 
     def place(self):
-        """Put every copy into the scene; those that cannot be, scaled to zero, are reported."""
+        """Put every copy into the scene; those that cannot be, scaled to zero or nowhere, are reported."""
         for asset in self._assets.values():
             matrices = np.zeros((len(asset.names), 4, 4))
             matrices[:, 3, 3] = 1.0
             matrices[:, :3] = np.reshape(asset.rows, (-1, 3, 4))
-            good = invertible(matrices)
+            good = placeable(asset.content, matrices)
             for i in np.flatnonzero(~good):
-                self._reports.warn(f"object {asset.names[i]!r} is scaled to zero along an axis and is not rendered")
+                finite = np.isfinite(matrices[i]).all()
+                why = "is scaled to zero along an axis" if finite else "has a place or a scale that is not finite"
+                self._reports.warn(f"object {asset.names[i]!r} {why} and is not rendered")
             if good.any():
                 self._place(asset, matrices[good], asset.names[int(np.argmax(good))])
 
@@ -95,25 +101,40 @@ class ObjectSync:
         elif kind == "POINTCLOUD":
             content = self._points(obj)
         else:
-            self._reports.warn(f"object {obj.name!r}: {kind.replace('_', ' ').lower()} geometry is not rendered")
+            self._reports.warn(f"object {obj.name!r} is not rendered: it is {_NOT_RENDERED.get(kind, kind.lower())}")
             content = None
         if content is None:
             return None
+        if any(shading.transmits for shading in shadings) and not self._is_closed(content, obj):
+            shadings = [self._shadings.of_sheet(shading) for shading in shadings]
         materials = tuple(shading.index for shading in shadings)
         return self._assets.setdefault((id(content), materials), _Asset(content, materials))
+
+    def _is_closed(self, content, obj):
+        """Whether an object's surface is the whole border of a body."""
+        if isinstance(content, Shape):
+            return is_closed_shape(content)
+        if obj.type != "MESH":
+            return True  # the spheres of a point cloud
+        key = data_key(obj.data)
+        if key not in self._closed:
+            self._closed[key] = is_closed_mesh(obj.data)
+        return self._closed[key]
 
     def _report_flags(self, obj):
         """Name the settings of visibility that are not rendered."""
         if not all(getattr(obj, name) for name in _VISIBLE_TO):
             self._reports.warn(f"object {obj.name!r}: its ray visibility is not rendered, all rays see it")
         flags = {
-            "a holdout": obj.is_holdout or obj.original.holdout_get(view_layer=self._view_layer),
-            "a shadow catcher": obj.is_shadow_catcher,
-            "indirect only": obj.original.indirect_only_get(view_layer=self._view_layer),
+            "is not rendered as a holdout": obj.is_holdout or obj.original.holdout_get(view_layer=self._view_layer),
+            "is not rendered as a shadow catcher": obj.is_shadow_catcher,
+            "is indirect only, which is not rendered: the camera sees it": obj.original.indirect_only_get(
+                view_layer=self._view_layer
+            ),
         }
         for flag, is_set in flags.items():
             if is_set:
-                self._reports.warn(f"object {obj.name!r}: it is not rendered as {flag}")
+                self._reports.warn(f"object {obj.name!r}: it {flag}")
 
     def _report_hair(self, obj):
         for system in obj.particle_systems:
@@ -127,10 +148,15 @@ class ObjectSync:
         return tuple(self._shadings.of(slot.material) for slot in obj.material_slots) or (self._shadings.of(None),)
 
     def _mesh_content(self, obj, shadings):
-        mesh = obj.data
-        if not len(mesh.polygons):
+        mesh, primitive = obj.data, obj.conic.primitive
+        if not len(mesh.polygons) and primitive != "PLANE":
+            if primitive not in ("AUTO", "MESH"):
+                shape = primitive.lower()
+                self._reports.warn(
+                    f"object {obj.name!r} is not rendered: its {shape} has no faces to take its size from"
+                )
             return None
-        taken = taken_as(obj.conic.primitive, mesh, shadings, self._recognise, self._recognitions)
+        taken = taken_as(primitive, mesh, shadings, self._recognise, self._recognitions)
         if taken.problem:
             self._reports.warn(f"object {obj.name!r}: rendered as a {taken.reason}")
         if taken.shape is None:
@@ -148,9 +174,8 @@ class ObjectSync:
         if key not in self._geometries:
             read = read_triangles(mesh, len(shadings), key[2])
             if read.dropped:
-                self._reports.warn(
-                    f"object {obj.name!r}: {read.dropped} triangles with NaN or infinite vertices are not rendered"
-                )
+                dropped, verb = ("1 triangle", "is") if read.dropped == 1 else (f"{read.dropped} triangles", "are")
+                self._reports.warn(f"object {obj.name!r}: {dropped} with NaN or infinite vertices {verb} not rendered")
             self._geometries[key] = None if read.triangles is None else Geometry(read.triangles, name=mesh.name)
         return self._geometries[key]
 

@@ -136,7 +136,7 @@ def _uv_conflict(recognition: Recognition, shadings):
     return ""
 
 
-_NOUNS = {"CURVE": "curve", "FONT": "text", "META": "metaball", "SURFACE": "surface"}
+_NOUNS = {"CURVE": "curve", "FONT": "text", "META": "metaball", "SURFACE": "NURBS surface"}
 
 
 def describe(obj, depsgraph):
@@ -147,16 +147,33 @@ def describe(obj, depsgraph):
     """
     evaluated = obj.evaluated_get(depsgraph)
     primitive = evaluated.conic.primitive
-    if evaluated.type in _NOUNS and primitive in ("AUTO", "MESH"):
-        return "MESH", f"mesh: made from a {_NOUNS[evaluated.type]}"
     if evaluated.type in _NOUNS:
-        return primitive, f"{primitive.lower()}: chosen in the object's settings"
+        return _describe_made(evaluated, primitive)
     if evaluated.type != "MESH":
         return "NONE", "it is no surface"
     mesh = evaluated.data
-    if not len(mesh.polygons):
+    if not len(mesh.polygons) and primitive not in ("AUTO", "MESH", "PLANE"):
+        return "NONE", f"not rendered: the {primitive.lower()} has no faces to take its size from"
+    if not len(mesh.polygons) and primitive != "PLANE":
         return "MESH", "mesh: it has no faces"
     shadings = Shadings(Scene(), None, Reports(lambda level, message: None))
     slots = tuple(shadings.of(slot.material) for slot in evaluated.material_slots) or (shadings.of(None),)
     taken = taken_as(primitive, mesh, slots, depsgraph.scene.conic.recognise, Recognitions())
     return taken.kind, taken.reason
+
+
+def _describe_made(evaluated, primitive):
+    """`describe` of an evaluated curve, text, metaball or surface, from which Blender makes a mesh, or lines alone."""
+    noun = _NOUNS[evaluated.type]
+    if evaluated.type != "META" and not _has_faces(evaluated):  # of a family of metaballs one has the faces of all
+        return "NONE", f"not rendered: this {noun} has no surface; give it a bevel, an extrusion or a filling"
+    if primitive in ("AUTO", "MESH"):
+        return "MESH", f"mesh: made from a {noun}"
+    return primitive, f"{primitive.lower()}: chosen in the object's settings"
+
+
+def _has_faces(evaluated):
+    mesh = evaluated.to_mesh()
+    has_faces = mesh is not None and len(mesh.polygons) > 0
+    evaluated.to_mesh_clear()
+    return has_faces

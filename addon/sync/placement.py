@@ -4,10 +4,9 @@
 import numpy as np
 
 from ..engine.primitives import Similarity
+from ..engine.primitives.base import invertible
 from ..engine.scene import Geometry, Instance, Planes
-
-#: Inverse of the condition number up to which a matrix of float32 values can be inverted.
-_SINGULAR = 1e-7
+from .shapes import Shape
 
 
 class Similarities:
@@ -34,14 +33,23 @@ class Similarities:
         return np.einsum("nij,nj->ni", self.rotation, directions)
 
 
-def invertible(matrices):
-    """Which of matrices (n, 4, 4) can be inverted: (n,) bool; those that are not finite cannot."""
+def placeable(content, matrices):
+    """Where copies of a `Shape` or Geometry can stand, of matrices (n, 4, 4) object to world: (n,) bool.
+
+    An infinite plane needs its X and Y axes only.
+    """
     finite = np.isfinite(matrices).all(axis=(1, 2))
-    x, y, z = np.moveaxis(np.where(finite[:, None, None], matrices, 0.0)[:, :3, :3], 2, 0)
-    adjugate = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
-    determinant = np.einsum("ni,ni->n", x, adjugate[:, 0])
-    size = np.sqrt((x * x + y * y + z * z).sum(axis=1) * (adjugate * adjugate).sum(axis=(1, 2)))
-    return np.abs(determinant) > _SINGULAR * size  # the inverse is the adjugate over the determinant
+    world = np.where(finite[:, None, None], matrices, 0.0)
+    if isinstance(content, Shape):
+        world = world @ content.local
+    if is_plane(content):
+        world[:, :3, 2] = np.cross(world[:, :3, 0], world[:, :3, 1])
+    return finite & invertible(world)
+
+
+def is_plane(content):
+    """Whether a `Shape` or Geometry is the infinite plane."""
+    return isinstance(content, Shape) and isinstance(content.primitives[0], Planes)
 
 
 def keeps_shapes(matrices):
@@ -59,7 +67,7 @@ def place_shape(scene, shape, matrices, materials, name):
     Copies that keep their form become primitives in world space; the others, stretched, instances.
     """
     world = matrices @ shape.local
-    if isinstance(shape.primitives[0], Planes):
+    if is_plane(shape):
         scene.add(planes_at(shape.primitives[0], world, materials))
         return
     kept = keeps_shapes(world)
@@ -88,7 +96,8 @@ def planes_at(plane, matrices, materials):
     """The infinite plane (one row, through the origin, normal Z) under matrices (n, 4, 4), stretched ones too."""
     x, y = matrices[:, :3, 0], matrices[:, :3, 1]
     normal = np.cross(x, y)
-    normal *= np.sign(np.einsum("ni,ni->n", normal, matrices[:, :3, 2]))[:, None]  # mirrored: still the side of Z
+    # Mirrored: still the side of Z, where that is not scaled to zero.
+    normal *= np.where(np.einsum("ni,ni->n", normal, matrices[:, :3, 2]) < 0.0, -1.0, 1.0)[:, None]
     return Planes(
         point=matrices[:, :3, 3],
         normal=normal,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's materials as the engine's: node trees of the basic shaders with constants and images."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,11 +20,13 @@ DEFAULT = Material()  # Blender's grey, for a slot without material
 
 @dataclass(frozen=True)
 class Shading:
-    """A material of the scene: its number, and the `UvSource` of its images, None where it has none."""
+    """A material of the scene: its number, the `UvSource` of its images, None where it has none, and whether light
+    goes through it."""
 
     index: int
     uv: object = None
     name: str = ""
+    transmits: bool = False
 
 
 class Shadings:
@@ -33,6 +35,7 @@ class Shadings:
     def __init__(self, scene, images, reports):
         self._scene, self._images, self._reports = scene, images, reports
         self._by_key = {}
+        self._sheets = {}
 
     def of(self, material):
         """The `Shading` of a Blender material, or of None: an empty slot, or one whose material was deleted."""
@@ -41,12 +44,21 @@ class Shadings:
             self._by_key[key] = self._read(material)
         return self._by_key[key]
 
+    def of_sheet(self, shading):
+        """The `Shading` of the same material on a surface that is not closed: what enters there is in no body."""
+        if not shading.transmits:
+            return shading
+        if shading.index not in self._sheets:
+            material = replace(self._scene.materials[shading.index], bounds_body=False)
+            self._sheets[shading.index] = replace(shading, index=self._scene.add_material(material))
+        return self._sheets[shading.index]
+
     def _read(self, material):
         if material is None:
             return Shading(self._scene.add_material(DEFAULT))
         reader = NodeReader(f"material {material.name!r}", self._images, self._reports)
         read = read_material(material, reader)
-        return Shading(self._scene.add_material(read), reader.uv, material.name)
+        return Shading(self._scene.add_material(read), reader.uv, material.name, max(read.transmit) > 0.0)
 
 
 def read_material(material, reader):
@@ -85,7 +97,7 @@ def _absorption(source, reader):
     if source is None or source.node is None:
         return (0.0, 0.0, 0.0)
     if source.type != "VOLUME_ABSORPTION":
-        reader.not_understood(source, "no volume")
+        reader.left_out(source, "its volume")
         return (0.0, 0.0, 0.0)
     color = reader.color(source.input("Color")).average
     return np.maximum(reader.number(source.input("Density")) * (1.0 - color), 0.0)

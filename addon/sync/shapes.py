@@ -29,6 +29,22 @@ def shape_of(recognition):
     return Shape(tuple(_MAKE[part.kind](part) for part in recognition.parts), local)
 
 
+def is_closed_shape(shape):
+    """Whether a `Shape` is the whole border of a body: a disc alone is not, nor a cylinder or cone without its ends.
+
+    The infinite plane is: what lies below it, as water.
+    """
+    discs = ends = 0
+    for part in shape.primitives:
+        if isinstance(part, Discs):
+            discs += len(part)
+        elif isinstance(part, Cylinders):
+            ends += 2 * len(part)
+        elif isinstance(part, Cones):
+            ends += np.count_nonzero(part.base_radius > 0.0) + np.count_nonzero(part.apex_radius > 0.0)
+    return discs == ends
+
+
 def plane_shape():
     """The infinite plane through the object's origin where its X and Y axes lie."""
     return Shape((Planes(point=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0)),), np.eye(4))

@@ -49,6 +49,10 @@ class NodeReader:
         """Report the node of `source`, once, with what is used instead of it."""
         self.warn(f"node {source.node.name!r} is not rendered; {instead} is used instead")
 
+    def left_out(self, source, what):
+        """Report the node of `source`, once, and that there is nothing instead of `what` it makes."""
+        self.warn(f"node {source.node.name!r} is not rendered; {what} is left out")
+
     def number(self, source):
         """The number that feeds a socket; where it varies over the surface, the socket's own value, reported."""
         if source.node is None:
@@ -111,8 +115,9 @@ class NodeReader:
             return UvSource(source.node.attribute_name)
         if source.type == "MAPPING":
             return self._mapped(source)
-        what = source.output.name.lower() if source.type == "TEX_COORD" else f"node {source.node.name!r}"
-        self.warn(f"images by {what} coordinates are not rendered; the uv map is used instead")
+        of_node = f"coordinates of node {source.node.name!r}"
+        what = f"{source.output.name.lower()} coordinates" if source.type == "TEX_COORD" else of_node
+        self.warn(f"images by {what} are not rendered; the uv map is used instead")
         return UvSource()
 
     def _mapped(self, source):
@@ -151,7 +156,7 @@ def mapping_matrix(source, reader):
     """The (4, 4) matrix of a Mapping node, its linked inputs by their own values."""
     node = source.node
     if node.vector_type == "NORMAL":
-        reader.not_understood(source, "no mapping")
+        reader.left_out(source, "its mapping")
         return np.eye(4)
     location, angles, scale = (_vector(reader, source.input(name)) for name in ("Location", "Rotation", "Scale"))
     matrix = np.eye(4)
@@ -160,7 +165,7 @@ def mapping_matrix(source, reader):
         matrix[:3, 3] = location
     if node.vector_type == "TEXTURE":  # the texture moves, not the point
         if abs(np.linalg.det(matrix)) < 1e-12:
-            reader.warn(f"node {node.name!r} has a scale of 0; no mapping is used instead")
+            reader.warn(f"node {node.name!r} has a scale of 0; its mapping is left out")
             return np.eye(4)
         return np.linalg.inv(matrix)
     return matrix

@@ -23,7 +23,7 @@ def read_world(world, scene, images, reports):
     surface = output_source(tree, "Surface")
     volume = output_source(tree, "Volume")
     if volume is not None and volume.node is not None:
-        reader.not_understood(volume, "no volume")
+        reader.left_out(volume, "its volume")
     if surface is None or surface.node is None:
         return World(color=(0.0, 0.0, 0.0))
     if surface.type not in ("BACKGROUND", "EMISSION"):

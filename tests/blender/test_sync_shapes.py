@@ -268,6 +268,59 @@ def test_description_of_what_is_no_mesh():
     assert described(link(mesh_of([(0, 0, 0)], [])))[1] == "mesh: it has no faces"
 
 
+@pytest.mark.parametrize("primitive", ("AUTO", "SPHERE", "PLANE"))
+def test_a_curve_is_described_as_what_is_drawn_of_it(primitive):
+    add_camera()
+    bpy.ops.curve.primitive_bezier_curve_add()
+    obj = bpy.context.object
+    obj.conic.primitive = primitive
+    assert described(obj)[0] == "NONE" and "has no surface" in described(obj)[1]
+    assert sync().scene.primitive_counts() == {}
+    obj.data.bevel_depth = 0.1
+    assert described(obj)[0] == {"AUTO": "MESH"}.get(primitive, primitive)
+    assert sync().scene.primitive_counts() or sync().scene.planes
+
+
+def test_a_metaball_is_a_mesh():
+    bpy.ops.object.metaball_add(type="BALL")
+    assert described(bpy.context.object) == ("MESH", "mesh: made from a metaball")
+
+
+@pytest.mark.parametrize("kind", ("SPHERE", "CYLINDER", "CONE", "DISC"))
+def test_a_chosen_shape_without_faces_is_named(kind):
+    add_camera()
+    obj = link(mesh_of([(0, 0, 0), (1, 1, 1)], []), "points")
+    obj.conic.primitive = kind
+    synced = sync()
+    assert synced.scene.primitive_counts() == {}
+    assert len(synced.warnings("'points'", kind.lower(), "no faces to take its size from")) == 1
+    assert described(obj)[0] == "NONE" and "no faces to take its size from" in described(obj)[1]
+
+
+def test_a_plane_without_end_needs_no_faces():
+    add_camera()
+    obj = link(bpy.data.meshes.new("nothing"), "sea", location=(0.0, 0.0, -1.0))
+    obj.conic.primitive = "PLANE"
+    synced = sync()
+    (plane,) = synced.scene.planes
+    assert plane.point[0, 2] == -1.0 and not synced.messages and described(obj)[0] == "PLANE"
+
+
+@pytest.mark.parametrize("size", (1e-4, 1.0, 1e4))
+def test_a_plane_without_end_needs_no_height(size):
+    add_camera()
+    obj = quad("floor", scale=(size, 3.0 * size, 0.0), rotation_euler=(0.0, 0.5, 0.0))
+    obj.conic.primitive = "PLANE"
+    synced = sync()
+    (plane,) = synced.scene.planes
+    np.testing.assert_allclose(plane.normal, [(np.sin(0.5), 0.0, np.cos(0.5))], atol=1e-5)
+    np.testing.assert_allclose(plane.tile, size, rtol=1e-5)
+    assert not synced.messages
+    obj.scale = (1.0, 0.0, 1.0)
+    synced = sync()
+    assert not synced.scene.planes and synced.warnings("'floor'", "scaled to zero")
+
+
 def test_instances_by_geometry_nodes():
     add_camera()
     tree = bpy.data.node_groups.new("balls", "GeometryNodeTree")

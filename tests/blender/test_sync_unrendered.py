@@ -33,4 +33,3 @@ def test_flags_of_collections_are_named(flag, words):
     bpy.context.scene.collection.objects.unlink(bpy.data.objects["in it"])
     setattr(bpy.context.view_layer.layer_collection.children["kept apart"], flag, True)
     assert sync().warnings("in it", words)
-

@@ -161,3 +161,23 @@ def test_an_error_is_shown_and_the_next_change_tries_again(view, monkeypatch):
         assert not view.redraw(), "it does not try again and again"
     view.session.mark()
     assert sphere_at(view.settle())[1] > 0
+
+
+@pytest.mark.parametrize(
+    "error, words",
+    [(ValueError("shapes do not fit"), "ValueError: shapes do not fit"), (MemoryError(), "not enough memory")],
+)
+@pytest.mark.parametrize("place", ["sync_scene", "camera_of_view"])
+def test_a_defect_is_shown_and_its_traceback_logged_once(view, monkeypatch, caplog, place, error, words):
+    def fail(*_arguments, **_settings):
+        raise type(error)(*error.args)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(viewport_session, place, fail)
+        for _ in range(3):
+            view.session.mark()
+            assert not view.redraw() and words in view.engine.text
+    traces = [record for record in caplog.records if "Traceback" in record.getMessage()]
+    assert len(traces) == (0 if isinstance(error, MemoryError) else 1)
+    view.session.mark()
+    assert sphere_at(view.settle())[1] > 0
