@@ -244,7 +244,7 @@ class Instance:
 class Scene:
     """Everything a picture is made from.
 
-    Shapes that keep their form (see `Similarity`) go straight into `shapes`, one geometry in world space whose
+    Shapes that keep their form (see `keeps_shapes`) go straight into `shapes`, one geometry in world space whose
     material slots are the scene's materials. Meshes and stretched shapes are instances. `planes` is a list of
     infinite planes.
     """

@@ -3,34 +3,9 @@
 
 import numpy as np
 
-from ..engine.primitives import Similarity
-from ..engine.primitives.base import invertible
+from ..engine.primitives import Similarity, invertible, keeps_shapes
 from ..engine.scene import Geometry, Instance, Planes
 from .shapes import Shape
-
-
-class Similarities:
-    """Similarity transforms (n,), row by row on primitives of n rows; otherwise as `engine.primitives.Similarity`."""
-
-    def __init__(self, rotation, scale, translation):
-        self.rotation, self.scale, self.translation = rotation, scale, translation
-
-    @classmethod
-    def of(cls, matrices):
-        """From matrices (n, 4, 4) that are known to keep shapes."""
-        linear = matrices[:, :3, :3]
-        scale = np.cbrt(np.linalg.det(linear))
-        return cls(linear / scale[:, None, None], scale, matrices[:, :3, 3])
-
-    def repeated(self, count):
-        """Each transform `count` times in a row."""
-        return Similarities(*(np.repeat(a, count, axis=0) for a in (self.rotation, self.scale, self.translation)))
-
-    def points(self, points):
-        return self.directions(points) * self.scale[:, None] + self.translation
-
-    def directions(self, directions):
-        return np.einsum("nij,nj->ni", self.rotation, directions)
 
 
 def placeable(content, matrices):
@@ -52,15 +27,6 @@ def is_plane(content):
     return isinstance(content, Shape) and isinstance(content.primitives[0], Planes)
 
 
-def keeps_shapes(matrices):
-    """Which of invertible matrices (n, 4, 4) are similarities, as `Similarity.of` decides: (n,) bool."""
-    linear = matrices[:, :3, :3]
-    gram = np.swapaxes(linear, 1, 2) @ linear
-    squared = np.trace(gram, axis1=1, axis2=2) / 3.0
-    deviation = np.abs(gram - squared[:, None, None] * np.eye(3)).max(axis=(1, 2))
-    return (deviation <= 2.0 * Similarity.TOLERANCE * squared) & (np.linalg.det(linear) > 0.0)
-
-
 def place_shape(scene, shape, matrices, materials, name):
     """Put copies of a `Shape` into the engine scene: `matrices` (n, 4, 4) object to world, the material of each slot.
 
@@ -72,7 +38,7 @@ def place_shape(scene, shape, matrices, materials, name):
         return
     kept = keeps_shapes(world)
     if kept.any():
-        moves = Similarities.of(world[kept])
+        moves = Similarity.of(world[kept])
         for part in shape.primitives:
             scene.add(_copies(part, moves, materials))
     if not kept.all():

@@ -1,7 +1,7 @@
 """The kinds of primitives, a file each. `BY_KIND` is in the order of the leaf labels (`layout.KINDS`)."""
 
 from ..layout import KINDS
-from .base import Primitives, Similarity, invertible
+from .base import Primitives, Similarity, invertible, keeps_shapes
 from .cone import Cones
 from .cylinder import Cylinders
 from .disc import Discs
@@ -25,4 +25,5 @@ __all__ = [
     "Spheres",
     "Triangles",
     "invertible",
+    "keeps_shapes",
 ]

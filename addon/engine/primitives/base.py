@@ -133,36 +133,45 @@ class Primitives:
 
 
 class Similarity:
-    """A transform that keeps shapes: uniform scale, rotation and translation.
+    """A transform that keeps shapes: uniform scale, rotation and translation; one for all primitives, or one a row.
 
-    `Similarity.of(matrix)` gives None for a 4x4 matrix that shears, stretches or mirrors (which would turn the uv
-    around), so that the caller can instance instead.
+    `rotation` (3, 3) or (n, 3, 3), `scale` a number or (n,), `translation` (3,) or (n, 3).
     """
-
-    #: Largest relative deviation from conformal that still counts as such: about the rounding of a float32 matrix.
-    TOLERANCE = 2e-6
 
     def __init__(self, rotation, scale, translation):
         self.rotation, self.scale, self.translation = rotation, scale, translation
 
     @classmethod
-    def of(cls, matrix):
-        matrix = np.asarray(matrix, np.float64)
-        linear = matrix[:3, :3]
-        gram = linear.T @ linear
-        squared = np.trace(gram) / 3.0
-        if not squared > 0.0 or np.abs(gram - squared * np.eye(3)).max() > 2.0 * cls.TOLERANCE * squared:
-            return None
-        if np.linalg.det(linear) < 0.0:
-            return None
-        scale = float(np.sqrt(squared))
-        return cls(linear / scale, scale, matrix[:3, 3].copy())
+    def of(cls, matrices):
+        """From matrices (4, 4) or (n, 4, 4) for which `keeps_shapes` holds."""
+        matrices = np.asarray(matrices, np.float64)
+        linear = matrices[..., :3, :3]
+        scale = np.cbrt(np.linalg.det(linear))
+        return cls(linear / scale[..., None, None], scale, matrices[..., :3, 3])
+
+    def repeated(self, count):
+        """Each of n transforms `count` times in a row."""
+        return Similarity(*(np.repeat(a, count, axis=0) for a in (self.rotation, self.scale, self.translation)))
 
     def points(self, points):
-        return (points @ self.rotation.T) * self.scale + self.translation
+        return self.directions(points) * np.asarray(self.scale)[..., None] + self.translation
 
     def directions(self, directions):
-        return directions @ self.rotation.T
+        return np.einsum("...ij,...j->...i", self.rotation, directions)
+
+
+#: Largest relative deviation from conformal that still counts as such: about the rounding of a float32 matrix.
+_CONFORMAL = 2e-6
+
+
+def keeps_shapes(matrices):
+    """Which of matrices (n, 4, 4) are similarities: (n,) bool. Those that shear, stretch or mirror (which would turn
+    the uv around) are not: what they move has to be instanced."""
+    linear = np.asarray(matrices, np.float64)[:, :3, :3]
+    gram = np.swapaxes(linear, 1, 2) @ linear
+    squared = np.trace(gram, axis1=1, axis2=2) / 3.0
+    deviation = np.abs(gram - squared[:, None, None] * np.eye(3)).max(axis=(1, 2))
+    return (deviation <= 2.0 * _CONFORMAL * squared) & (np.linalg.det(linear) > 0.0)
 
 
 #: Volume of the box of a matrix's unit axes below which float32 cannot invert it.
