@@ -311,7 +311,7 @@ def pack_leaf(kind, count, index_high):
 
 
 def shared(record):
-    """Whether other records lie in the same texture, so that this one starts at `frame.<record>_first`."""
+    """Whether other records lie in the same texture, so that this one starts at `frame_<record>_first`."""
     return sum(other.texture == record.texture for other in RECORDS) > 1
 
 
@@ -321,24 +321,44 @@ def glsl_struct(record):
     return f"struct {record.struct_name} {{\n{members}}};\n"
 
 
-def glsl_reader(record):
-    """GLSL struct of a record and `read_<record>(index)`, which fetches it from its data texture."""
-    values, offset = [], 0
+def _places(record):
+    """Each field of a record with where it lies: (field, number of its texel, its components as a swizzle)."""
+    offset = 0
     for field in record.fields:
         texel, first = divmod(offset, 4)
-        value = f"t{texel}.{_SWIZZLE[first : first + field.size]}"
-        values.append(f"int({value})" if field.type == "int" else value)
+        yield field, texel, _SWIZZLE[first : first + field.size]
         offset += field.size
-    base = f"int(frame.{record.name}_first) + " if shared(record) else ""
+
+
+def glsl_reader(record):
+    """GLSL struct of a record and `read_<record>(index)`, which fetches it from its data texture."""
+    base = f"int(frame_{record.name}_first) + " if shared(record) else ""
     fetches = "".join(f"  vec4 t{k} = fetch_{record.texture}(texel + {k});\n" for k in range(record.texels))
+    values = ""
+    for field, texel, components in _places(record):
+        value = f"t{texel}.{components}"
+        values += f"  record.{field.name} = {f'int({value})' if field.type == 'int' else value};\n"
     return (
         f"{glsl_struct(record)}"
         f"{record.struct_name} read_{record.name}(int index) {{\n"
         f"  int texel = {base}index * {record.texels};\n"
         f"{fetches}"
-        f"  return {record.struct_name}({', '.join(values)});\n"
+        f"  {record.struct_name} record;\n"
+        f"{values}"
+        f"  return record;\n"
         f"}}\n"
     )
+
+
+def glsl_uniform_struct():
+    """GLSL struct of the uniform block: groups of four floats only, since vec3 members lie elsewhere in Metal."""
+    groups = "".join(f"  vec4 group_{k};\n" for k in range(FRAME.texels))
+    return f"struct {FRAME.struct_name} {{\n{groups}}};\n"
+
+
+def glsl_uniforms():
+    """GLSL names `frame_<field>` of the members of the uniform block `frame`."""
+    return "".join(f"#define frame_{field.name} (frame.group_{k}.{part})\n" for field, k, part in _places(FRAME))
 
 
 def glsl_fetch(texture):

@@ -93,14 +93,14 @@ def _program(entry, features, constants, outputs, folders, records):
     composer = _Composer(folders, features, records)
     for name, value in constants:
         composer.emit(f"#define {name} {value}", "<constants>", 1)
-    for number, line in enumerate(layout.glsl_constants().splitlines(), 1):
+    for number, line in enumerate((layout.glsl_constants() + layout.glsl_uniforms()).splitlines(), 1):
         composer.emit(line, "<layout>", number)
     composer.file(entry)
     return ProgramSource(
         name=entry,
         fragment="\n".join(composer.text) + "\n",
         textures=tuple(composer.textures),
-        uniform_struct=layout.glsl_struct(layout.FRAME),
+        uniform_struct=layout.glsl_uniform_struct(),
         outputs=outputs,
         lines=tuple(composer.lines),
     )

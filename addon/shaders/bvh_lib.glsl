@@ -14,10 +14,14 @@
 #define BVH_MISS 3.0e38
 
 /* Where a ray has a component 0, a tiny one in its place gives the slab an interval without 0 * infinity. */
+float bvh_inverse_of(float x)
+{
+  return abs(x) < 1e-30 ? (x < 0.0 ? -1e30 : 1e30) : 1.0 / x;
+}
+
 vec3 bvh_inverse(vec3 direction)
 {
-  vec3 tiny = vec3(direction.x < 0.0 ? -1e-30 : 1e-30, direction.y < 0.0 ? -1e-30 : 1e-30, direction.z < 0.0 ? -1e-30 : 1e-30);
-  return 1.0 / mix(direction, tiny, lessThan(abs(direction), vec3(1e-30)));
+  return vec3(bvh_inverse_of(direction.x), bvh_inverse_of(direction.y), bvh_inverse_of(direction.z));
 }
 
 /* The ray's origin as the boxes' lower and upper faces see it, a few roundings apart: the intersection with a primitive
@@ -35,7 +39,11 @@ Slabs bvh_slabs(Ray ray)
 {
   vec3 size = abs(ray.origin);
   vec3 error = vec3(BVH_RELATIVE_ERROR * max(size.x, max(size.y, size.z)));
-  return Slabs(ray.origin + error, ray.origin - error, bvh_inverse(ray.direction));
+  Slabs slabs;
+  slabs.origin_lower = ray.origin + error;
+  slabs.origin_upper = ray.origin - error;
+  slabs.inverse = bvh_inverse(ray.direction);
+  return slabs;
 }
 
 /* Paper 3.2.7: where the segment t in (0, t_max] enters a box, 0 when it starts inside, BVH_MISS when it misses. */
@@ -58,7 +66,7 @@ Ray bvh_object_ray(Instance instance, Ray ray, out float scale)
   vec3 direction = vec3(dot(instance.to_object_x.xyz, ray.direction), dot(instance.to_object_y.xyz, ray.direction),
                         dot(instance.to_object_z.xyz, ray.direction));
   scale = length(direction);
-  return Ray(vec3(dot(instance.to_object_x, origin), dot(instance.to_object_y, origin), dot(instance.to_object_z, origin)),
+  return ray_make(vec3(dot(instance.to_object_x, origin), dot(instance.to_object_y, origin), dot(instance.to_object_z, origin)),
              direction / scale);
 }
 #endif
@@ -74,9 +82,13 @@ vec3 bvh_world_normal(Instance instance, vec3 n)
 /* The nearest hit in (0, t_max), or the first one found when `any_hit`; hit.kind is -1 when there is none. */
 Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
 {
-  Hit hit = Hit(t_max, -1, 0, -1);
-  primitive_planes_hit(int(frame.plane_count), world_ray, hit);
-  if (frame.root_count < 0.5 || (any_hit && hit.kind >= 0)) {
+  Hit hit;
+  hit.t = t_max;
+  hit.kind = -1;
+  hit.index = 0;
+  hit.instance = -1;
+  primitive_planes_hit(int(frame_plane_count), world_ray, hit);
+  if (frame_root_count < 0.5 || (any_hit && hit.kind >= 0)) {
     return hit;
   }
   Ray ray = world_ray;

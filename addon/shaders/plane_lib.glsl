@@ -16,5 +16,5 @@ Surface plane_surface(Plane plane, PlaneSurface info, Ray ray, float t)
   position -= (dot(position, plane.normal) + plane.offset) * plane.normal;
   vec3 offset = position - info.origin;
   vec2 uv = vec2(dot(offset, info.meridian), dot(offset, cross(plane.normal, info.meridian)));
-  return Surface(position, plane.normal, plane.normal, uv, info.material, ray_flat_error(plane.normal, position) + RAY_RELATIVE_ERROR * abs(plane.offset));
+  return ray_make_surface(position, plane.normal, plane.normal, uv, info.material, ray_flat_error(plane.normal, position) + RAY_RELATIVE_ERROR * abs(plane.offset));
 }

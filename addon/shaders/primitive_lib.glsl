@@ -116,5 +116,5 @@ Surface primitive_surface(Hit hit, Ray ray)
     return plane_surface(read_plane(hit.index), read_plane_surface(hit.index), ray, hit.t);
   }
 #endif
-  return Surface(ray.origin, -ray.direction, -ray.direction, vec2(0.0), 0, 0.0);
+  return ray_make_surface(ray.origin, -ray.direction, -ray.direction, vec2(0.0), 0, 0.0);
 }

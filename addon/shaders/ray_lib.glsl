@@ -15,6 +15,27 @@ struct Surface {
   float error; /* bound of the rounding error of position across the surface, an absolute length */
 };
 
+/* Structs are made by functions: Metal's language knows no constructors of the kind `ray_make(origin, direction)`. */
+Ray ray_make(vec3 origin, vec3 direction)
+{
+  Ray ray;
+  ray.origin = origin;
+  ray.direction = direction;
+  return ray;
+}
+
+Surface ray_make_surface(vec3 position, vec3 geometric_normal, vec3 shading_normal, vec2 uv, int material, float error)
+{
+  Surface surface;
+  surface.position = position;
+  surface.geometric_normal = geometric_normal;
+  surface.shading_normal = shading_normal;
+  surface.uv = uv;
+  surface.material = material;
+  surface.error = error;
+  return surface;
+}
+
 /* A position that is put on its surface again is wrong by a few roundings of the numbers that it was made of; 2^-18 is 32
  * units in the last place, which covers the intersection that the next ray makes of it as well. */
 #define RAY_RELATIVE_ERROR 3.8e-6

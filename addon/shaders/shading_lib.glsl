@@ -16,6 +16,18 @@ struct Path {
   bool direct; /* straight from the eye, through nothing but surfaces that do not bend it */
 };
 
+Path shading_path(Ray ray, float t_max, vec3 weight, int depth, ivec4 media, bool direct)
+{
+  Path path;
+  path.ray = ray;
+  path.t_max = t_max;
+  path.weight = weight;
+  path.depth = depth;
+  path.media = media;
+  path.direct = direct;
+  return path;
+}
+
 /* A surface being lit. */
 struct Lit {
   Surface surface;
@@ -45,6 +57,17 @@ struct Scattered {
   Path refracted;
 };
 
+/* Nothing goes on; `path` stands for rays that are not there. */
+Scattered shading_nothing(Path path)
+{
+  Scattered scattered;
+  scattered.reflects = false;
+  scattered.reflected = path;
+  scattered.refracts = false;
+  scattered.refracted = path;
+  return scattered;
+}
+
 /* What the light that reaches a lit surface from `direction` adds to the pixel. */
 vec3 shading_lit_by(Lit lit, vec3 radiance, vec3 direction, float cosine)
 {
@@ -60,7 +83,14 @@ vec3 shading_lit_by(Lit lit, vec3 radiance, vec3 direction, float cosine)
  * lights when there is none. Lights without shadows are added to `radiance` at once. */
 Shadow shading_next_shadow(inout int index, Lit lit, inout vec3 radiance)
 {
-  int count = int(frame.light_count);
+  int count = int(frame_light_count);
+  Shadow shadow;
+  shadow.ray = ray_make(vec3(0.0), vec3(0.0, 0.0, 1.0));
+  shadow.t_max = 0.0;
+  shadow.contribution = vec3(0.0);
+  shadow.tint = vec3(0.0);
+  shadow.media = lit.media;
+  shadow.surfaces = 0;
   for (; index < count; index++) {
     Light light = read_light(index);
     vec3 direction;
@@ -75,15 +105,19 @@ Shadow shading_next_shadow(inout int index, Lit lit, inout vec3 radiance)
       radiance += contribution;
       continue;
     }
-    Ray ray = Ray(ray_spawn(lit.surface, direction), direction);
+    Ray ray = ray_make(ray_spawn(lit.surface, direction), direction);
     if (light.kind != LIGHT_SUN) { /* from where the ray starts, not from the surface */
       vec3 to_light = light.position - ray.origin;
       t_max = length(to_light);
       ray.direction = to_light / max(t_max, 1e-30);
     }
-    return Shadow(ray, t_max, contribution, vec3(1.0), lit.media, 0);
+    shadow.ray = ray;
+    shadow.t_max = t_max;
+    shadow.contribution = contribution;
+    shadow.tint = vec3(1.0);
+    break;
   }
-  return Shadow(Ray(vec3(0.0), vec3(0.0, 0.0, 1.0)), 0.0, vec3(0.0), vec3(0.0), lit.media, 0);
+  return shadow;
 }
 
 /* What a shadow ray brings when nothing more stands before the light. */
@@ -113,7 +147,7 @@ bool shading_pass(inout Shadow shadow, Hit hit)
   shadow.ray.origin = ray_spawn(surface, shadow.ray.direction);
   shadow.t_max -= hit.t;
   shadow.surfaces++;
-  return optics_largest(shadow.tint) > frame.weight_cutoff && shadow.surfaces <= TINTED_SHADOW_SURFACES;
+  return optics_largest(shadow.tint) > frame_weight_cutoff && shadow.surfaces <= TINTED_SHADOW_SURFACES;
 }
 
 /* The reflected ray. An interpolated normal may bend it into the surface: then it grazes. */
@@ -124,7 +158,7 @@ Ray shading_reflected(Surface surface, vec3 direction, vec3 normal, vec3 face)
   if (outside <= 0.0) {
     mirrored = normalize(mirrored + (1e-3 - outside) * face);
   }
-  return Ray(ray_spawn(surface, mirrored), mirrored);
+  return ray_make(ray_spawn(surface, mirrored), mirrored);
 }
 
 /* The refracted ray, likewise kept beyond the surface. */
@@ -134,7 +168,7 @@ Ray shading_refracted(Surface surface, vec3 bent, vec3 face)
   if (outside >= 0.0) {
     bent = normalize(bent - (1e-3 + outside) * face);
   }
-  return Ray(ray_spawn(surface, bent), bent);
+  return ray_make(ray_spawn(surface, bent), bent);
 }
 
 /* Where a path meets a surface: what it gives off towards the eye is added to `radiance`, `lit` is what the lights are to
@@ -183,22 +217,28 @@ Scattered shading_scatter(Path path, Hit hit, inout vec3 radiance, out Lit lit)
   else if (total) {
     mirror += material.transmit;
   }
-  lit = Lit(surface, normal, incoming, weight * diffuse, weight * material.highlight, material.shine, path.media);
+  lit.surface = surface;
+  lit.normal = normal;
+  lit.view = incoming;
+  lit.diffuse = weight * diffuse;
+  lit.highlight = weight * material.highlight;
+  lit.shine = material.shine;
+  lit.media = path.media;
 
-  Scattered scattered = Scattered(false, path, false, path);
+  Scattered scattered = shading_nothing(path);
   mirror *= weight;
   through *= weight;
-  if (path.depth < int(frame.max_depth)) {
-    scattered.reflects = optics_largest(mirror) > frame.weight_cutoff;
-    scattered.refracts = optics_largest(through) > frame.weight_cutoff;
+  if (path.depth < int(frame_max_depth)) {
+    scattered.reflects = optics_largest(mirror) > frame_weight_cutoff;
+    scattered.refracts = optics_largest(through) > frame_weight_cutoff;
   }
   if (scattered.reflects) {
     Ray ray = shading_reflected(surface, incoming, normal, face);
-    scattered.reflected = Path(ray, 1e30, mirror, path.depth + 1, path.media, false);
+    scattered.reflected = shading_path(ray, 1e30, mirror, path.depth + 1, path.media, false);
   }
   if (scattered.refracts) {
     Ray ray = shading_refracted(surface, optics_refract(incoming, normal, cos_i, cos_t, eta), face);
-    scattered.refracted = Path(ray, 1e30, through, path.depth + 1, beyond, path.direct && eta == 1.0);
+    scattered.refracted = shading_path(ray, 1e30, through, path.depth + 1, beyond, path.direct && eta == 1.0);
   }
   return scattered;
 }

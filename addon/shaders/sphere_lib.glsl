@@ -40,6 +40,6 @@ Surface sphere_surface(Sphere sphere, SphereSurface info, Ray ray, float t)
   vec3 local = sphere_rotate(-info.rotation, normal);
   /* atan keeps the digits near the poles that acos, (31), loses. */
   float v = 1.0 - atan(length(local.xy), local.z) * (2.0 / TWO_PI);
-  return Surface(sphere.center + radius * normal, normal, normal, vec2(quadric_u(local.x, local.y), v), info.material,
+  return ray_make_surface(sphere.center + radius * normal, normal, normal, vec2(quadric_u(local.x, local.y), v), info.material,
                  ray_error(sphere.center, radius));
 }

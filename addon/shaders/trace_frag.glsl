@@ -17,10 +17,10 @@ void main()
 {
   float t_max;
   Ray eye = camera_ray(gl_FragCoord.xy, t_max);
-  Path path = Path(eye, t_max, vec3(1.0), 1, medium_outside(), true);
+  Path path = shading_path(eye, t_max, vec3(1.0), 1, medium_outside(), true);
   Path stack[PATH_STACK_SIZE];
   int stacked = 0;
-  Scattered scattered = Scattered(false, path, false, path); /* what goes on when the lights are done */
+  Scattered scattered = shading_nothing(path); /* what goes on when the lights are done */
   Lit lit;
   Shadow shadow;
   int light = -1; /* the light whose shadow ray is on its way; -1: the path's own ray */
@@ -34,7 +34,7 @@ void main()
   /* A driver may end a loop for good after so many turns, as Mesa's software rasteriser does after 65535 in all: what has not
    * ended by itself is told. The condition always holds; without one the compiler would take every end for the loop's own. */
   bool ended = false;
-  while (frame.max_depth > 0.0) {
+  while (frame_max_depth > 0.0) {
     bool is_shadow = light >= 0;
     Ray ray = path.ray;
     float limit = path.t_max;
@@ -62,7 +62,7 @@ void main()
       light++;
     }
     else if (missed) {
-      if (frame.film_transparent > 0.5 && path.direct) {
+      if (frame_film_transparent > 0.5 && path.direct) {
         alpha -= (path.weight.r + path.weight.g + path.weight.b) / 3.0;
       }
       else {
@@ -76,12 +76,12 @@ void main()
 #endif
       scattered = shading_scatter(path, hit, radiance, lit);
       bool shaded = optics_largest(lit.diffuse) > 0.0 || optics_largest(lit.highlight) > 0.0;
-      light = shaded ? 0 : int(frame.light_count);
+      light = shaded ? 0 : int(frame_light_count);
     }
 
     if (light >= 0) {
       shadow = shading_next_shadow(light, lit, radiance);
-      if (light < int(frame.light_count)) {
+      if (light < int(frame_light_count)) {
         TRACE_COUNT(shadows);
         continue;
       }

@@ -6,9 +6,9 @@
 /* A vertex as the ray sees it: two coordinates across the ray and the third along it. What a vertex becomes depends on
  * nothing but the ray, so triangles that share it agree on it. (The idea is Woop et al. 2013, Watertight Ray/Triangle
  * Intersection; the basis is that of Duff et al. 2017, Building an Orthonormal Basis, Revisited.) */
-vec3 triangle_seen(vec3 vertex, Ray ray)
+vec3 triangle_seen(vec3 corner, Ray ray)
 {
-  vec3 offset = vertex - ray.origin;
+  vec3 offset = corner - ray.origin;
   vec3 d = ray.direction;
   float side = d.z < 0.0 ? -1.0 : 1.0;
   float a = -1.0 / (side + d.z);
@@ -91,6 +91,6 @@ Surface triangle_surface(Triangle triangle, TriangleSurface info, Ray ray, float
   }
   vec2 uv = weights.x * vec2(info.u0, info.v0) + weights.y * info.uv1 + weights.z * info.uv2;
   vec3 extent = max(abs(triangle.p0), max(abs(triangle.p1), abs(triangle.p2)));
-  return Surface(position, normal, shading_normal, uv, info.material,
+  return ray_make_surface(position, normal, shading_normal, uv, info.material,
                  min(ray_flat_error(triangle_spread(e1, e2) / area, extent), ray_error(extent, 0.0)));
 }

@@ -15,8 +15,8 @@ vec2 world_uv(vec3 direction)
 vec3 world_radiance(vec3 direction)
 {
 #ifdef HAS_WORLD_IMAGE
-  return frame.world_color * image_sample(int(frame.world_image), world_uv(direction)).rgb;
+  return frame_world_color * image_sample(int(frame_world_image), world_uv(direction)).rgb;
 #else
-  return frame.world_color;
+  return frame_world_color;
 #endif
 }

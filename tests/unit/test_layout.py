@@ -11,19 +11,18 @@ from addon.engine.layout import Field, Record
 each_record = pytest.mark.parametrize("record", layout.RECORDS, ids=lambda record: record.name)
 
 
+SIZES = {"float": 1, "int": 1, "vec2": 2, "vec3": 3, "vec4": 4}
+
+
 def glsl_reads(record, floats):
-    """What `read_<record>` makes of the floats (4 * texels,), member by member, taken from the GLSL text itself."""
+    """What `read_<record>` makes of the floats of one record: member name to a list of values."""
     text = layout.glsl_reader(record)
-    struct = re.search(r"struct \w+ \{(.*?)\};", text, re.S).group(1)
-    members = re.findall(r"(\w+) (\w+);", struct)
-    arguments = re.search(rf"return {record.struct_name}\((.*)\);", text).group(1)
-    values = re.findall(r"(?:int\()?t(\d+)\.([xyzw]+)", arguments)
-    assert len(members) == len(values)
-    sizes = {"float": 1, "int": 1, "vec2": 2, "vec3": 3, "vec4": 4}
+    kinds = {name: kind for kind, name in re.findall(r"^  (\w+) (\w+);$", text.split("};")[0], re.MULTILINE)}
     read = {}
-    for (kind, name), (texel, swizzle) in zip(members, values, strict=True):
-        assert len(swizzle) == sizes[kind], name
+    for name, texel, swizzle in re.findall(r"record\.(\w+) = (?:int\()?t(\d+)\.([xyzw]+)", text):
+        assert len(swizzle) == SIZES[kinds[name]], name
         read[name] = [floats[4 * int(texel) + "xyzw".index(c)] for c in swizzle]
+    assert list(read) == list(kinds)
     return read
 
 
@@ -48,22 +47,22 @@ def test_records_are_fetched_from_their_own_place(record):
     assert texels == list(range(record.texels))
     assert f"index * {record.texels};" in text
     first = f"{record.name}_first"
-    assert (f"frame.{first}" in text) == layout.shared(record)
+    assert (f"frame_{first}" in text) == layout.shared(record)
     if layout.shared(record):
         assert first in layout.FRAME.dtype.names
 
 
-def test_the_frame_is_laid_out_as_std140_lays_it_out():
-    """Offsets by std140's rules: vec3 and vec4 begin at multiples of 16 bytes, vec2 of 8, a float may follow a vec3."""
-    align = {"float": 4, "vec2": 8, "vec3": 16, "vec4": 16}
-    offset = 0
-    for field in layout.FRAME.fields:
-        assert field.type in align, f"{field.name}: an int would need its bits, not its value"
-        offset = -(-offset // align[field.type]) * align[field.type]
-        assert layout.FRAME.dtype.fields[field.name][1] == offset, field.name
-        offset += 4 * field.size
-    size = -(-offset // 16) * 16
-    assert layout.FRAME.dtype.itemsize == size == 16 * layout.FRAME.texels
+def test_the_frame_is_read_as_it_was_written():
+    """The uniform block is groups of four floats, which every language lays out alike, and a name for each part."""
+    assert re.findall(r"  (\w+) group_\d+;", layout.glsl_uniform_struct()) == ["vec4"] * layout.FRAME.texels
+    assert layout.FRAME.dtype.itemsize == 16 * layout.FRAME.texels
+    names = re.findall(r"#define frame_(\w+) \(frame\.group_(\d+)\.([xyzw]+)\)", layout.glsl_uniforms())
+    assert [name for name, _, _ in names] == list(layout.FRAME.dtype.names)
+    for name, group, swizzle in names:
+        kind, offset = layout.FRAME.dtype.fields[name][:2]
+        assert 16 * int(group) + 4 * "xyzw".index(swizzle[0]) == offset, name
+        assert 4 * len(swizzle) == kind.itemsize, name
+    assert all(field.type != "int" for field in layout.FRAME.fields), "an int would need its bits, not its value"
 
 
 def test_no_name_is_given_twice():

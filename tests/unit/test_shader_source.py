@@ -144,3 +144,13 @@ def test_a_program_has_only_the_textures_it_uses(feature):
         assert (record.texture in source.textures) == record.name.startswith(kind), record.texture
     assert ("instances" in source.textures) == (feature == "HAS_INSTANCES")
     assert ("images" in source.textures) == ("IMAGE" in feature)
+
+
+def test_structs_have_no_constructors():
+    """Metal's language has none of GLSL's kind: structs are filled member by member."""
+    text = program("trace_frag.glsl", FEATURES, {}).fragment
+    text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+    structs = re.findall(r"\bstruct (\w+)", text)
+    assert {"Ray", "Surface", "Sphere"} <= set(structs)
+    for name in structs:
+        assert not re.search(rf"\b{name}\s*\(", text), name

@@ -6,11 +6,11 @@
 void main()
 {
   TestRay test = read_test_ray(TEST_INDEX);
-  Ray ray = Ray(test.origin, test.direction);
+  Ray ray = ray_make(test.origin, test.direction);
   Hit hit = bvh_traverse(ray, test.t_max, false);
   Hit any = bvh_traverse(ray, test.t_max, true);
   out_hit = vec4(hit.t, float(hit.kind), float(hit.instance), float(any.kind));
-  Surface surface = Surface(vec3(0.0), vec3(0.0), vec3(0.0), vec2(0.0), -1, 0.0);
+  Surface surface = ray_make_surface(vec3(0.0), vec3(0.0), vec3(0.0), vec2(0.0), -1, 0.0);
   vec3 spawned = vec3(0.0);
   float number = -1.0; /* materials glow with their number */
   if (hit.kind >= 0) {
