@@ -254,14 +254,14 @@ def test_conics_own_errors_reach_the_user_without_a_traceback(scene, tmp_path, c
 @pytest.mark.parametrize(
     "place, error, words, traced",
     [
-        ("sync_scene", ValueError("shapes do not fit"), "ValueError: shapes do not fit", True),
-        ("sync_scene", KeyError(), "KeyError: see the console", True),
-        ("Session", MemoryError(), "not enough memory for this scene", False),
+        ("sync_scene", lambda: ValueError("shapes do not fit"), "ValueError: shapes do not fit", True),
+        ("sync_scene", KeyError, "KeyError: see the console", True),
+        ("Session", MemoryError, "not enough memory for this scene", False),
     ],
 )
 def test_whatever_fails_is_an_error_and_no_picture(scene, tmp_path, monkeypatch, capfd, place, error, words, traced):
     def fail(*_arguments, **_settings):
-        raise error
+        raise error()  # anew: one that is kept would keep Blender's data in its traceback
 
     monkeypatch.setattr(render_session, place, fail)
     scene.render.filepath = str(tmp_path / "picture.exr")
