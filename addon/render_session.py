@@ -15,7 +15,7 @@ from .engine.devices.blender_gpu import BlenderDevice
 from .sync.camera import camera_of_render
 from .sync.scene_sync import sync_scene, sync_settings
 
-STEP_SECONDS = 0.1 if bpy.app.background else 0.04  # between two looks at whether the user wants out
+STEP_SECONDS = 0.05 if bpy.app.background else 0.04  # between two looks at whether the user wants out
 RESULT_SECONDS = 0.5  # between two showings of what is there so far
 
 
