@@ -15,13 +15,9 @@ from .errors import SceneError
 from .image_packing import pack_images
 from .primitives import BY_KIND, Planes, Similarity, invertible
 from .scene import LightKind, Material
+from .tree_packing import build_tree, moved_boxes, node_records
 
 _INSTANCE = layout.KINDS.index("instance")
-
-#: How much larger boxes are stored than they are, relative to the largest of their coordinates: what the intersection
-#: with a primitive rounds by. The shader adds the same for the ray's origin.
-_BOX_PADDING = 2.0**-21
-_BOX_PADDING_ABSOLUTE = 1e-20
 
 
 @dataclass
@@ -39,15 +35,6 @@ class PackedScene:
     warnings: list = field(default_factory=list)
 
 
-@dataclass(frozen=True)
-class _Tree:
-    """A geometry's tree and its primitives' records in the order of the leaves, by label."""
-
-    tree: bvh.Bvh
-    records: dict
-    slots: int  # one more than the largest material slot used
-
-
 def pack(scene, max_texture_size):
     """Pack a scene for a device whose textures are at most `max_texture_size` wide and high.
 
@@ -59,7 +46,7 @@ def pack(scene, max_texture_size):
     started = time.perf_counter()
     origin = scene_origin(scene)
     geometries = _distinct_geometries(scene)
-    trees = [_build_tree(geometry, origin if geometry is scene.shapes else None) for geometry in geometries]
+    trees = [build_tree(geometry, origin if geometry is scene.shapes else None) for geometry in geometries]
     built = time.perf_counter() - started
     packer = _Packer(scene, origin, geometries, trees, max_texture_size)
     packed = packer.pack()
@@ -121,31 +108,6 @@ def _distinct_geometries(scene):
             seen.add(id(instance.geometry))
             geometries.append(instance.geometry)
     return geometries
-
-
-def _build_tree(geometry, origin):
-    """The tree of a geometry; `origin` is subtracted first where its space is the world's."""
-    parts = dict(geometry.kinds())
-    if origin is not None and origin.any():
-        move = Similarity(np.eye(3), 1.0, -origin)
-        parts = {label: part.transformed(move) for label, part in parts.items()}
-    boxes = [part.bounds() for part in parts.values()]
-    lower = np.concatenate([lower for lower, _ in boxes])
-    upper = np.concatenate([upper for _, upper in boxes])
-    labels = np.repeat(list(parts), [len(part) for part in parts.values()])
-    try:
-        tree = bvh.build(lower, upper, labels)
-    except ValueError as error:
-        raise SceneError(f"geometry {geometry.name!r}: {error}") from error
-    records, start = {}, 0
-    for label, part in parts.items():
-        rows = tree.order[tree.run[label] : tree.run[label + 1]] - start
-        records[label] = part.take(rows).records()
-        start += len(part)
-    for part in parts.values():
-        if part.material.min() < 0:
-            raise SceneError(f"geometry {geometry.name!r}: a {part.kind} uses material slot {int(part.material.min())}")
-    return _Tree(tree, records, 1 + max(int(part.material.max()) for part in parts.values()))
 
 
 class _Packer:
@@ -213,7 +175,7 @@ class _Packer:
             matrices[:, :3, 3] -= self.origin
         which = np.array(which, np.int64)
         bounds = np.array([t.tree.bounds for t in self.trees], np.float64).reshape(-1, 2, 3)
-        lower, upper = _moved_boxes(bounds[which], matrices)
+        lower, upper = moved_boxes(bounds[which], matrices)
         top = bvh.build(lower, upper, leaf_size=1)
         return self._instance_records(matrices[top.order], which[top.order], np.array(first)[top.order], top), top
 
@@ -255,9 +217,9 @@ class _Packer:
         bases, kinds = np.zeros(len(BY_KIND), np.int64), np.arange(len(BY_KIND))
         nodes = []
         if top is not None:
-            nodes.append(_node_records(top, 0, np.zeros(1, np.int64), np.array([_INSTANCE])))
+            nodes.append(node_records(top, 0, np.zeros(1, np.int64), np.array([_INSTANCE])))
         for start, geometry in zip(self._node_starts(top), self.trees, strict=True):
-            nodes.append(_node_records(geometry.tree, start, bases, kinds))
+            nodes.append(node_records(geometry.tree, start, bases, kinds))
             for label, (hit, _) in geometry.records.items():
                 bases[label] += len(hit)
         self.texels["nodes"] = _texels(np.concatenate(nodes) if nodes else layout.NODE.zeros(1))
@@ -392,31 +354,3 @@ class _Packer:
 def _texels(records):
     """Structured records (n,) as texels (n * texels of the record, 4) float32."""
     return np.ascontiguousarray(records).view(np.float32).reshape(-1, 4)
-
-
-def _node_records(tree, node_start, primitive_starts, kinds):
-    """GPU nodes of a tree whose nodes begin at `node_start`. By label: where its primitives begin, which kind it is."""
-    label = np.maximum(tree.label, 0)
-    first = np.where(tree.is_leaf, tree.child + primitive_starts[label], np.maximum(tree.child, 0) + node_start)
-    low, high = layout.split_index(first)
-    leaf = layout.pack_leaf(np.where(tree.is_leaf, kinds[label], 0), tree.count, high)
-    boxes = tree.boxes.astype(np.float64)
-    padding = np.abs(boxes).max(axis=(2, 3))[:, :, None] * _BOX_PADDING + _BOX_PADDING_ABSOLUTE
-    lower = np.maximum(boxes[:, :, 0] - padding, -bvh.FAR)
-    upper = np.minimum(boxes[:, :, 1] + padding, bvh.FAR)
-    empty = ~tree.is_leaf & ~tree.is_inner
-    lower[empty] = upper[empty] = bvh.FAR
-    records = layout.NODE.zeros(len(tree))
-    for child in (0, 1):
-        records[f"lower_{child}"], records[f"upper_{child}"] = lower[:, child], upper[:, child]
-        records[f"first_{child}"], records[f"leaf_{child}"] = low[:, child], leaf[:, child]
-    return records
-
-
-def _moved_boxes(bounds, matrices):
-    """Boxes (n, 2, 3) under affine matrices (n, 4, 4): lower and upper corners (n, 3). (Arvo 1990, Graphics Gems.)"""
-    center = bounds.mean(axis=1)
-    half = (bounds[:, 1] - bounds[:, 0]) / 2.0
-    moved = np.einsum("nij,nj->ni", matrices[:, :3, :3], center) + matrices[:, :3, 3]
-    reach = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), half)
-    return moved - reach, moved + reach
