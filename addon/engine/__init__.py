@@ -4,23 +4,8 @@ from addon.engine import Camera, Light, Material, Scene, render
 """
 
 from .errors import ConicError, DeviceError, SceneError
-from .scene import (
-    Camera,
-    Cones,
-    Cylinders,
-    Discs,
-    Geometry,
-    Image,
-    Instance,
-    Light,
-    LightKind,
-    Material,
-    Planes,
-    Scene,
-    Spheres,
-    Triangles,
-    World,
-)
+from .primitives import Cones, Cylinders, Discs, Planes, Spheres, Triangles
+from .scene import Camera, Geometry, Image, Instance, Light, LightKind, Material, Scene, World
 from .session import Picture, Session, render
 from .settings import Settings
 

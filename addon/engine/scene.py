@@ -339,22 +339,3 @@ class Scene:
         if self.planes:
             counts["plane"] = sum(len(planes) for planes in self.planes)
         return counts
-
-
-__all__ = [
-    "Camera",
-    "Cones",
-    "Cylinders",
-    "Discs",
-    "Geometry",
-    "Image",
-    "Instance",
-    "Light",
-    "LightKind",
-    "Material",
-    "Planes",
-    "Scene",
-    "Spheres",
-    "Triangles",
-    "World",
-]

@@ -76,8 +76,12 @@ class Session:
             "TINTED_SHADOW_SURFACES": _TINTED_SHADOW_SURFACES,
             "UNENDED_ALPHA": UNENDED_ALPHA,
         }
-        outputs = ("out_color", "out_rays", "out_dropped") if self._counts else ("out_color",)
-        return shader_source.program("trace_frag.glsl", features, constants, outputs)
+        return shader_source.program("trace_frag.glsl", features, constants, self._outputs)
+
+    @property
+    def _outputs(self):
+        """What the program writes, an attachment of the film each."""
+        return ("out_color", "out_rays", "out_dropped") if self._counts else ("out_color",)
 
     def start(self, width, height, camera=None, border=None):
         """Begin a picture of `width` x `height` pixels, or the part `border` (x, y, width, height) of it."""
@@ -94,7 +98,7 @@ class Session:
             border=border,
             samples=self.settings.samples,
             corner_rays=self.settings.corner_rays,
-            attachments=3 if self._counts else 1,
+            attachments=len(self._outputs),
         )
         self._reported_drops = False
         if not self._drawn:  # drivers leave much of their work to the first draw: make it a small one
@@ -164,7 +168,7 @@ class Session:
         self._film = self._packed = None
 
     def _film_bytes(self):
-        return self._film.width * self._film.height * 16 * (3 if self._counts else 1) if self._film else 0
+        return self._film.width * self._film.height * 16 * len(self._outputs) if self._film else 0
 
     def _release_textures(self):
         for texture in self._textures.values():
@@ -184,7 +188,7 @@ class Session:
 
     def _draw_outside(self):
         """Draw one pixel of a target that is thrown away."""
-        scratch = self.device.target(1, 1, 3 if self._counts else 1)
+        scratch = self.device.target(1, 1, len(self._outputs))
         self._draw((0, 0, 1, 1), self._film.raster(0, self.camera.window), scratch)
         self.device.read(scratch, 0, (0, 0, 1, 1))
         self.device.release(scratch)

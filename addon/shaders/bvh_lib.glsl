@@ -71,14 +71,6 @@ Ray bvh_object_ray(Instance instance, Ray ray, out float scale)
 }
 #endif
 
-#ifdef HAS_INSTANCES
-/* Normals go with the transposed inverse; the length is that of 1 / stretch along the normal. */
-vec3 bvh_world_normal(Instance instance, vec3 n)
-{
-  return n.x * instance.to_object_x.xyz + n.y * instance.to_object_y.xyz + n.z * instance.to_object_z.xyz;
-}
-#endif
-
 /* The nearest hit in (0, t_max), or the first one found when `any_hit`; hit.kind is -1 when there is none. */
 Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
 {
@@ -186,12 +178,16 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
 }
 
 #ifdef HAS_INSTANCES
+/* Normals go with the transposed inverse; the length is that of 1 / stretch along the normal. */
+vec3 bvh_world_normal(Instance instance, vec3 n)
+{
+  return n.x * instance.to_object_x.xyz + n.y * instance.to_object_y.xyz + n.z * instance.to_object_z.xyz;
+}
+
 /* The surface of a hit within an instance, from object space to world space. `seen`: as large as the numbers that the
  * position was made of, in world space. */
-Surface bvh_placed_surface(Surface surface, int index, vec3 seen)
+Surface bvh_placed_surface(Surface surface, Instance instance, InstanceSurface placed, vec3 seen)
 {
-  Instance instance = read_instance(index);
-  InstanceSurface placed = read_instance_surface(index);
   vec3 normal = surface.geometric_normal;
   vec4 position = vec4(surface.position, 1.0);
   surface.position =
@@ -218,16 +214,18 @@ Surface bvh_surface(Hit hit, Ray world_ray)
   vec3 seen = world_ray.origin + hit.t * world_ray.direction;
   Ray ray = world_ray;
 #ifdef HAS_INSTANCES
+  Instance instance;
   if (hit.instance >= 0) {
     float scale;
-    ray = bvh_object_ray(read_instance(hit.instance), world_ray, scale);
+    instance = read_instance(hit.instance);
+    ray = bvh_object_ray(instance, world_ray, scale);
     hit.t *= scale;
   }
 #endif
   Surface surface = primitive_surface(hit, ray);
 #ifdef HAS_INSTANCES
   if (hit.instance >= 0) {
-    surface = bvh_placed_surface(surface, hit.instance, abs(seen));
+    surface = bvh_placed_surface(surface, instance, read_instance_surface(hit.instance), abs(seen));
   }
 #endif
   if (primitive_is_flat(hit.kind)) { /* along a floor that reaches far its coordinates are coarse: what was seen is finer */

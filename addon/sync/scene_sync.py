@@ -44,7 +44,7 @@ def sync_settings(scene, preview=False):
     return Settings(
         samples=conic.preview_samples if preview else conic.samples,
         max_depth=conic.max_depth,
-        weight_cutoff=min(conic.weight_cutoff, 0.999),
+        weight_cutoff=conic.weight_cutoff,
         tinted_shadows=conic.shadows == "TINTED",
         film_transparent=scene.render.film_transparent,
     )

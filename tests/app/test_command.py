@@ -8,6 +8,8 @@ import bpy
 import numpy as np
 import pytest
 
+from tests.blender.pictures import picture
+
 ROOT = Path(__file__).resolve().parents[2]
 REGISTER = (
     f"import sys; sys.dont_write_bytecode = True; sys.path.insert(0, {str(ROOT)!r}); import addon; addon.register()"
@@ -42,17 +44,9 @@ def run_blender(path, *arguments):
     return done.returncode, done.stdout + done.stderr
 
 
-def picture(path):
-    """The colors (h, w, 3) of an image file, bottom row first."""
-    image = bpy.data.images.load(str(path))
-    assert tuple(image.size) == (WIDTH, HEIGHT)
-    pixels = np.empty(WIDTH * HEIGHT * 4, np.float32)
-    image.pixels.foreach_get(pixels)
-    return pixels.reshape(HEIGHT, WIDTH, 4)[..., :3]
-
-
 def assert_shows_a_sphere(pixels):
     """A world that is not black, and before it something that a lamp lights."""
+    assert pixels.shape[:2] == (HEIGHT, WIDTH)
     world = pixels[:, 0]
     assert world.min() > 0.0 and pixels.max() > 1.5 * world.max()
 
@@ -65,14 +59,14 @@ def test_one_frame(scene_file):
     code, said = run_blender(scene_file, "-f", "1")
     assert code == 0, said
     assert written(scene_file.parent) == ["out_0001.png"] and "Traceback" not in said
-    assert_shows_a_sphere(picture(scene_file.parent / "out_0001.png"))
+    assert_shows_a_sphere(picture(scene_file.parent / "out_0001.png")[..., :3])
 
 
 def test_an_animation(scene_file):
     code, said = run_blender(scene_file, "-a")
     assert code == 0, said
     assert written(scene_file.parent) == ["out_0001.png", "out_0002.png"] and "Traceback" not in said
-    first, second = (picture(scene_file.parent / name) for name in written(scene_file.parent))
+    first, second = (picture(scene_file.parent / name)[..., :3] for name in written(scene_file.parent))
     for pixels in (first, second):
         assert_shows_a_sphere(pixels)
     assert np.abs(first - second).max() > 0.1, "the sphere moves"

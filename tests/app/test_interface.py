@@ -4,6 +4,8 @@ import bpy
 import numpy as np
 import pytest
 
+from tests.blender.pictures import picture
+
 
 @pytest.fixture
 def startup(registered):
@@ -14,15 +16,6 @@ def startup(registered):
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 96, 54, 100
     scene.conic.samples = 2
     return scene
-
-
-def picture(path):
-    """The pixels (h, w, 4) of an image file, bottom row first."""
-    image = bpy.data.images.load(str(path))
-    width, height = image.size
-    pixels = np.empty(width * height * 4, np.float32)
-    image.pixels.foreach_get(pixels)
-    return pixels.reshape(height, width, 4)
 
 
 def test_conic_is_in_the_menu_of_render_engines():

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from tests.blender.building import add_camera, link, material, node
+from tests.blender.pictures import picture
 
 WIDTH, HEIGHT = 96, 72
 
@@ -56,10 +57,7 @@ def rendered(scene, engine, folder):
     render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
     render.filepath = str(folder / f"{engine}.exr")
     bpy.ops.render.render(write_still=True)
-    image = bpy.data.images.load(render.filepath)
-    pixels = np.empty(WIDTH * HEIGHT * 4, np.float32)
-    image.pixels.foreach_get(pixels)
-    return pixels.reshape(HEIGHT, WIDTH, 4)[..., :3]
+    return picture(render.filepath)[..., :3]
 
 
 def by_both(scene, folder):

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from addon import render_engine, render_session
+from tests.blender.pictures import picture
 
 ROOT = Path(__file__).resolve().parents[2]
 WIDTH, HEIGHT = 64, 48
@@ -55,16 +56,6 @@ def glowing(color=GLOW):
     output = next(node for node in nodes if node.type == "OUTPUT_MATERIAL")
     material.node_tree.links.new(emission.outputs[0], output.inputs["Surface"])
     return material
-
-
-def picture(path):
-    """The pixels (h, w, 4) of an EXR, bottom row first."""
-    image = bpy.data.images.load(str(path))
-    width, height = image.size
-    pixels = np.empty(width * height * 4, np.float32)
-    image.pixels.foreach_get(pixels)
-    bpy.data.images.remove(image)
-    return pixels.reshape(height, width, 4)
 
 
 def rendered(scene, path):
