@@ -9,8 +9,6 @@ metre. The objects are Blender's own spheres, cylinders, a cone and a circle, wh
 them as exact shapes.
 """
 
-import argparse
-import atexit
 import sys
 from math import radians
 from pathlib import Path
@@ -21,6 +19,7 @@ from mathutils import Euler, Matrix, Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from examples.in_blender import arguments_given, empty_blender, finish, parser_of
 from examples.molecule import (
     PACKAGE,
     VAN_DER_WAALS_RADIUS,
@@ -61,41 +60,14 @@ def main():
         atoms = read_pdb(options.pdb or find_1hpv())
     except (OSError, ValueError) as error:
         sys.exit(f"first_picture.py: {error}")
-    register_conic()
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    scene = build_scene(atoms)
-    scene.render.resolution_x, scene.render.resolution_y = options.size
-    scene.conic.samples = options.samples
-    if options.blend:
-        bpy.ops.wm.save_as_mainfile(filepath=str(Path(options.blend).resolve()), compress=True)
-    if options.output:
-        scene.render.filepath = str(Path(options.output).resolve())
-        bpy.ops.render.render(write_still=True)
+    empty_blender()
+    finish(build_scene(atoms), options)
 
 
 def parse_arguments():
-    """The options; under `blender -P` those after `--`."""
-    given = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
-    parser = argparse.ArgumentParser(prog="first_picture.py", description=__doc__.splitlines()[0])
-    parser.add_argument("--output", metavar="FILE", help="render into this PNG file")
-    parser.add_argument("--blend", metavar="FILE", help="save the scene as this .blend file")
-    parser.add_argument("--size", nargs=2, type=int, default=(960, 540), metavar=("W", "H"))
-    parser.add_argument("--samples", type=int, default=8)
+    parser = parser_of(__file__, __doc__.splitlines()[0], size=(960, 540))
     parser.add_argument("--pdb", metavar="FILE", help=f"PDB entry 1HPV; without it, the file in the package {PACKAGE}")
-    options = parser.parse_args(given)
-    if not (options.output or options.blend):
-        parser.error("nothing to do: give --output FILE, --blend FILE or both")
-    return options
-
-
-def register_conic():
-    """Conic from this checkout, unless Blender has it already as an extension."""
-    if not hasattr(bpy.types.Scene, "conic"):
-        import addon
-
-        addon.register()
-        if not bpy.app.binary_path:  # as a module; the application has freed its classes by then
-            atexit.register(addon.unregister)
+    return parser.parse_args(arguments_given())
 
 
 def build_scene(atoms):

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the example scripts have in common: run by a Python that has bpy, or by the application with `blender -b -P`."""
+
+import argparse
+import atexit
+import sys
+from pathlib import Path
+
+import bpy
+
+
+def register_conic():
+    """Conic from this checkout, unless Blender has it already as an extension."""
+    if not hasattr(bpy.types.Scene, "conic"):
+        import addon
+
+        addon.register()
+        if not bpy.app.binary_path:  # as a module; the application has freed its classes by then
+            atexit.register(addon.unregister)
+
+
+class _Parser(argparse.ArgumentParser):
+    def parse_args(self, *arguments):
+        options = super().parse_args(*arguments)
+        if not (options.output or options.blend):
+            self.error("nothing to do: give --output FILE, --blend FILE or both")
+        return options
+
+
+def parser_of(script, description, *, size, samples=8):
+    """A parser of the options that all examples have: --output, --blend, --size and --samples."""
+    parser = _Parser(prog=Path(script).name, description=description)
+    parser.add_argument("--output", metavar="FILE", help="render into this PNG file")
+    parser.add_argument("--blend", metavar="FILE", help="save the scene as this .blend file")
+    parser.add_argument("--size", type=int, nargs=2, default=size, metavar=("W", "H"))
+    parser.add_argument("--samples", type=int, default=samples)
+    return parser
+
+
+def arguments_given():
+    """The script's own arguments; under `blender -P` those after `--`."""
+    return sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
+
+
+def empty_blender():
+    """Conic registered, and no scene but an empty one."""
+    register_conic()
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+
+def finish(scene, options):
+    """Save and render the scene as the options say."""
+    scene.render.resolution_x, scene.render.resolution_y = options.size
+    scene.conic.samples = options.samples
+    if options.blend:
+        bpy.ops.wm.save_as_mainfile(filepath=str(Path(options.blend).resolve()), compress=True)
+    if options.output:
+        scene.render.filepath = str(Path(options.output).resolve())
+        bpy.ops.render.render(write_still=True)
