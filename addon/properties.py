@@ -31,6 +31,11 @@ PRIMITIVES = (
     ("PLANE", "Plane", "A plane without end, where the object's X and Y axes lie"),
 )
 
+CURVE_SAMPLING = (
+    ("PIXELS", "By Pixels", "As many steps as keep curves within a part of a pixel of their true form"),
+    ("FIXED", "Fixed", "The same number of steps between any two control points"),
+)
+
 
 class ConicSceneSettings(bpy.types.PropertyGroup):
     """`scene.conic`"""
@@ -87,6 +92,33 @@ class ConicSceneSettings(bpy.types.PropertyGroup):
         default="ALWAYS",
         update=tag_update,
     )
+    curve_sampling: EnumProperty(
+        name="Curves",
+        description="How curves and hair are cut into straight pieces",
+        items=CURVE_SAMPLING,
+        default="PIXELS",
+        update=tag_update,
+    )
+    curve_tolerance: FloatProperty(
+        name="Tolerance",
+        description="How far a straight piece may be off its curve, in pixels",
+        default=0.25,
+        min=0.001,
+        soft_min=0.05,
+        soft_max=4.0,
+        max=100.0,
+        subtype="PIXEL",
+        update=tag_update,
+    )
+    curve_steps: IntProperty(
+        name="Steps",
+        description="Straight pieces between two control points. 0 takes each curve's own resolution",
+        default=8,
+        min=0,
+        soft_max=64,
+        max=1024,
+        update=tag_update,
+    )
 
 
 class ConicObjectSettings(bpy.types.PropertyGroup):
@@ -97,6 +129,20 @@ class ConicObjectSettings(bpy.types.PropertyGroup):
         description="The exact shape that this object is rendered as",
         items=PRIMITIVES,
         default="AUTO",
+        update=tag_update,
+    )
+    strand_radius: FloatProperty(
+        name="Strand Radius",
+        description=(
+            "Radius of curves without bevel and of edges without faces; 0 does not render them. "
+            "A curve's own point radii multiply it"
+        ),
+        default=0.0,
+        min=0.0,
+        soft_max=1.0,
+        subtype="DISTANCE",
+        precision=4,
+        step=0.1,
         update=tag_update,
     )
 

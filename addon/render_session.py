@@ -12,11 +12,14 @@ import numpy as np
 from . import gpu_thread
 from .engine import ConicError, Session
 from .engine.devices.blender_gpu import BlenderDevice
+from .engine.timing import timed
+from .statistics import Statistics, log_line, primitives_text, publish
 from .sync.camera import camera_of_render
-from .sync.scene_sync import sync_scene, sync_settings
+from .sync.scene_sync import SyncStatistics, sync_scene, sync_settings
 
 STEP_SECONDS = 0.05 if bpy.app.background else 0.04  # between two looks at whether the user wants out
 RESULT_SECONDS = 0.5  # between two showings of what is there so far
+_MEBIBYTE = 1024.0**2
 
 
 class WindowDevice(BlenderDevice):
@@ -118,24 +121,54 @@ class LayerRender:
         self.border = border_of(engine, depsgraph.scene_eval.render)
         self.settings = sync_settings(depsgraph.scene_eval, engine.is_preview)
         self.views = [view.name for view in engine.get_result().views]
+        self.statistics = Statistics("Render", samples=self.settings.samples)
         self.shapes = ""
 
     def run(self):
         """Render all views, until done or until the user stops it. Raises ConicError."""
         self.engine.update_stats("Conic", "Reading the scene")
         self.engine.active_view_set(self.views[0])
-        scene = sync_scene(self.depsgraph, *self.size, engine=self.engine, report=self.report)
-        self.shapes = _counted(scene.primitive_counts())
         session = self.on_gpu(lambda: Session(new_device()))
         try:
-            self.engine.update_stats("Conic", f"Building | {self.shapes}")
-            session.build(scene, self.settings)
-            self.on_gpu(session.upload)
+            self.load(session)
             for index, view in enumerate(self.views):
                 if not self.engine.test_break():
                     self.render_view(session, index, view)
+            if not self.engine.test_break():
+                self.tell(session)
         finally:
             self.on_gpu(session.free)
+
+    def load(self, session):
+        """Read the scene and load it. Nothing of what was read is kept once the GPU has it."""
+        session.build(self.read(), self.settings)
+        self.on_gpu(session.upload)
+        used = self.statistics_of(session).gpu_total / _MEBIBYTE
+        self.engine.update_memory_stats(memory_used=used, memory_peak=used)
+
+    def read(self):
+        """The engine's scene."""
+        found = SyncStatistics()
+        with timed(self.statistics.seconds, "read"):
+            scene = sync_scene(self.depsgraph, *self.size, engine=self.engine, report=self.report, statistics=found)
+        self.statistics.add_reading(found)
+        self.shapes = primitives_text(scene.primitive_counts())
+        self.engine.update_stats("Conic", f"Building | {self.shapes}")
+        return scene
+
+    def statistics_of(self, session):
+        """The statistics, with what the session knows by now."""
+        self.statistics.add_session(session.statistics())
+        return self.statistics
+
+    def tell(self, session):
+        """Show what the picture was made of and what it cost; previews say nothing."""
+        if self.engine.is_preview:
+            return
+        self.statistics.reach("total")
+        self.statistics_of(session)
+        self.engine.update_stats("Conic", log_line(self.statistics))
+        self.on_gpu(publish, self.statistics)
 
     def on_gpu(self, function, *arguments):
         """Call where Blender's GPU context is active."""
@@ -147,6 +180,7 @@ class LayerRender:
         camera = camera_of_render(self.engine, self.depsgraph, *self.size)
         self.on_gpu(lambda: session.start(*self.size, camera=camera, border=self.border))
         size = self.border[2:] if self.border else self.size
+        self.statistics.width, self.statistics.height = size
         # The place of a result is relative to the border.
         result = self.engine.begin_result(0, 0, *size, layer=self.depsgraph.view_layer.name, view=view)
         try:
@@ -162,20 +196,17 @@ class LayerRender:
         shown = time.monotonic()
         while not self.engine.test_break() and self.on_gpu(session.step, STEP_SECONDS):
             self.engine.update_progress((index + session.progress) / len(self.views))
+            if session.sample > 0:
+                self.statistics.reach("first_picture")
             if time.monotonic() - shown > RESULT_SECONDS:
                 sample = f"Sample {session.sample + 1}/{self.settings.samples}"
                 self.engine.update_stats("Conic", f"{sample} | {self.shapes}")
                 self.show(session, result)
                 self.engine.update_result(result)
                 shown = time.monotonic()
+        self.statistics.reach("first_picture")
         self.engine.update_progress((index + session.progress) / len(self.views))
 
     def show(self, session, result):
         """Copy what is there so far to the render result."""
         result.layers[0].passes["Combined"].rect.foreach_set(self.on_gpu(session.pixels).reshape(-1))
-
-
-def _counted(counts):
-    """`2 cylinders, 7381 spheres` from a dictionary of numbers by kind."""
-    words = [f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in sorted(counts.items())]
-    return ", ".join(words) or "nothing to see"

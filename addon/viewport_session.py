@@ -5,17 +5,24 @@ import logging
 import traceback
 from dataclasses import replace
 
+import bpy
+
 from .engine import Session
+from .engine.timing import timed
 from .fingerprint import fingerprint
 from .render_session import is_defect, new_device, sentence_of
+from .statistics import Statistics, publish
 from .sync.camera import camera_of_view
-from .sync.scene_sync import sync_scene, sync_settings
+from .sync.scene_sync import SyncStatistics, sync_scene, sync_settings
 from .viewport_display import Display
 
 log = logging.getLogger(__name__)
 
 DRAW_SECONDS = 1.0 / 30.0  # of tracing in one redraw
 COARSE = 8  # a first picture, of every so manyth pixel, shows until the real one has a whole sample
+_SHOWN_TYPES = sorted(
+    name for name in bpy.types.SpaceView3D.bl_rna.properties.keys() if name.startswith("show_object_viewport_")
+)
 
 
 class LogReporter:
@@ -46,6 +53,8 @@ class ViewportSession:
         self.settings = None
         self.stale = True  # whether Blender's data may differ from what is loaded
         self.loaded = None  # fingerprint of what is loaded
+        self.shown = None  # which objects this viewport shows, as `shown_objects` has it, when they were read
+        self.statistics = None  # of what is loaded, until its first picture is there
         self.view = None  # of what is being drawn: size in pixels, pixel size, fingerprint of the camera
         self.coarse = False  # whether the first picture is being drawn
         self.error = ""
@@ -59,8 +68,10 @@ class ViewportSession:
         try:
             camera = camera_of_view(context.region, context.region_data)
             size = context.region.width, context.region.height
-            if self.stale:
-                self.read(depsgraph, size, camera)
+            shown = shown_objects(context.space_data)
+            if self.stale or shown != self.shown:
+                self.shown = shown
+                self.read(depsgraph, size, camera, context.space_data)
             if not self.error:
                 self.advance(size, self.engine.get_preview_pixel_size(depsgraph.scene), camera)
         except Exception as error:  # a view that raises would do so at every redraw
@@ -70,17 +81,24 @@ class ViewportSession:
         if self.error:
             self.engine.update_stats("Conic", self.error)
 
-    def read(self, depsgraph, size, camera):
+    def read(self, depsgraph, size, camera, space):
         """Read the scene; load it unless it is what is loaded: selecting an object changes nothing."""
         self.stale, self.error = False, ""
-        scene = sync_scene(depsgraph, *size, camera=camera, report=self.report)
-        settings = sync_settings(depsgraph.scene_eval, True)
-        found = fingerprint((replace(scene, camera=None), settings))
-        if found != self.loaded:
-            self.loaded = self.view = None  # if what follows fails, nothing is
-            self.session = self.session or Session(new_device())
-            self.session.load(scene, settings)
-            self.loaded, self.settings = found, settings
+        statistics, reading = Statistics("Viewport", width=size[0], height=size[1]), SyncStatistics()
+        with timed(statistics.seconds, "read"):
+            scene = sync_scene(depsgraph, *size, camera=camera, report=self.report, space=space, statistics=reading)
+            settings = sync_settings(depsgraph.scene_eval, True)
+            with timed(reading.seconds, "compare"):
+                found = fingerprint((replace(scene, camera=None), settings))
+        statistics.add_reading(reading)
+        if found == self.loaded:
+            return
+        self.loaded = self.view = None  # if what follows fails, nothing is
+        self.session = self.session or Session(new_device())
+        self.session.build(scene, settings)
+        del scene  # the session has it in its own form; uploading takes memory too
+        self.session.upload()
+        self.loaded, self.settings, self.statistics = found, settings, statistics
 
     def advance(self, size, pixel_size, camera):
         """Trace for a moment, and show what is there."""
@@ -92,6 +110,7 @@ class ViewportSession:
         whole = not more or self.session.sample > 0
         if self.coarse and whole:
             self.display.keep(self.session.pixels())
+            self.publish()
             self.start(size, pixel_size, camera)
             self.coarse, more = False, True
             self.display.draw()
@@ -105,6 +124,15 @@ class ViewportSession:
         """Begin a picture whose pixels are squares of `pixel_size` in a region of `size`."""
         self.session.start(*(max(1, round(length / pixel_size)) for length in size), camera=camera)
 
+    def publish(self):
+        """The first picture of what is loaded is there: show what it is made of and what it cost."""
+        if self.statistics:
+            self.statistics.reach("first_picture")
+            self.statistics.samples = self.settings.samples
+            self.statistics.add_session(self.session.statistics())
+            publish(self.statistics)
+            self.statistics = None
+
     def tell(self):
         """Show in the viewport how far it is, and that there is something to read in the console."""
         for warning in self.session.warnings:
@@ -113,3 +141,15 @@ class ViewportSession:
         if self.report.warnings:
             text += f" | {self.report.warnings} warning{'s' * (self.report.warnings > 1)}, see the console"
         self.engine.update_stats("Conic", text)
+
+
+def shown_objects(space):
+    """What of a 3D viewport's own settings decides which objects it shows; () for none, outside of a window.
+
+    They are no data of the scene. Blender 5.2 calls `view_update` for them too, but nothing promises that; it does when
+    objects enter or leave a local view or a hidden collection.
+    """
+    if space is None:
+        return ()
+    types = (getattr(space, name) for name in _SHOWN_TYPES)
+    return (space.local_view is not None, space.use_local_collections, *types)

@@ -5,7 +5,7 @@ from addon.engine import Camera, Light, Material, Scene, render
 
 from .errors import ConicError, DeviceError, SceneError
 from .primitives import Cones, Cylinders, Discs, Planes, Spheres, Triangles
-from .scene import Camera, Geometry, Image, Instance, Light, LightKind, Material, Scene, World
+from .scene import Camera, Geometry, Image, Instances, Light, LightKind, Material, Scene, Visibility, World
 from .session import Picture, Session, render
 from .settings import Settings
 
@@ -18,7 +18,7 @@ __all__ = [
     "Discs",
     "Geometry",
     "Image",
-    "Instance",
+    "Instances",
     "Light",
     "LightKind",
     "Material",
@@ -30,6 +30,7 @@ __all__ = [
     "Settings",
     "Spheres",
     "Triangles",
+    "Visibility",
     "World",
     "render",
 ]

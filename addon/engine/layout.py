@@ -1,4 +1,4 @@
-"""The one table of GPU records: numpy dtype, GLSL struct and GLSL reader are all made from it.
+"""The one table of GPU records: numpy dtype, GLSL struct and GLSL reader (`record_glsl`) are all made from it.
 
 A record is a sequence of fields that fill whole RGBA32F texels; no field straddles two texels. Records lie one after
 the other in a data texture of fixed width, several small record types may share one texture, each from a first texel
@@ -18,7 +18,6 @@ DATA_WIDTH_BITS = 12
 DATA_WIDTH = 1 << DATA_WIDTH_BITS
 
 _COMPONENTS = {"float": 1, "int": 1, "vec2": 2, "vec3": 3, "vec4": 4}
-_SWIZZLE = "xyzw"
 
 
 @dataclass(frozen=True)
@@ -42,6 +41,7 @@ class Record:
     name: str
     texture: str
     fields: tuple[Field, ...]
+    points_into: str = ""  # data texture of plain texels that it says where to read, "" for none
 
     def __post_init__(self):
         used = 0
@@ -71,8 +71,8 @@ class Record:
         return np.zeros(count, self.dtype)
 
 
-def _record(name, texture, *fields):
-    return Record(name, texture, tuple(Field(*field) for field in fields))
+def _record(name, texture, *fields, points_into=""):
+    return Record(name, texture, tuple(Field(*field) for field in fields), points_into)
 
 
 NODE = _record(
@@ -96,7 +96,9 @@ INSTANCE = _record(
     ("root", "int", "index of the geometry's root node: low part"),
     ("root_high", "int", "high part"),
     ("first_material", "int", "index of the material record of the geometry's material slot 0"),
-    ("unused", "float", ""),
+    ("geometry", "int", "number of the geometry, for its attributes"),
+    ("visibility", "int", "which rays see it and how, bits of `scene.Visibility`"),
+    ("unused", "vec3", ""),
 )
 INSTANCE_SURFACE = _record(
     "instance_surface",
@@ -115,7 +117,7 @@ SPHERE = _record(
 SPHERE_SURFACE = _record(
     "sphere_surface",
     "sphere_surfaces",
-    ("rotation", "vec3", "frame of the pole and zero meridian, modified Rodrigues parameters"),
+    ("rotation", "vec3", "frame of pole and zero meridian, modified Rodrigues parameters; or (u, v, FIXED_UV): one uv"),
     ("material", "int", "material slot"),
 )
 CYLINDER = _record(
@@ -192,6 +194,8 @@ PLANE = _record(
     "tables",
     ("normal", "vec3", "unit normal"),
     ("offset", "float", "W of the plane's equation normal . p + W = 0"),
+    ("visibility", "int", "which rays see it and how, bits of `scene.Visibility`"),
+    ("unused", "vec3", ""),
 )
 PLANE_SURFACE = _record(
     "plane_surface",
@@ -218,7 +222,12 @@ MATERIAL = _record(
     ("shine", "float", "Phong exponent of the highlight"),
     ("fresnel", "float", "1: mirror and transmission shares follow Fresnel; 0: constant shares"),
     ("bounds_body", "float", "1: where it transmits it is the border of a medium; 0: a single sheet"),
-    ("unused", "vec2", ""),
+    ("cull_back", "float", "1: rays that meet the back pass through, but shadow rays"),
+    ("cull_back_shadow", "float", "1: shadow rays that meet the back pass through"),
+    ("diffuse_attribute", "int", "attribute that multiplies the colour, -1: none"),
+    ("reflect_attribute", "int", ""),
+    ("transmit_attribute", "int", ""),
+    ("glow_attribute", "int", ""),
 )
 LIGHT = _record(
     "light",
@@ -238,6 +247,20 @@ IMAGE = _record(
     ("interpolation", "int", "0: nearest texel, 1: bilinear"),
     ("extension", "int", "0: repeat, 1: extend the edge, 2: black and transparent outside"),
     ("unused", "vec2", ""),
+    points_into="images",
+)
+# Of attribute a, for the primitives of kind k of geometry g: number (a * (geometry_count + 1) + g) * KIND_COUNT + k.
+# In the place of geometry `geometry_count` stand the instances, as kind KIND_INSTANCE.
+ATTRIBUTE = _record(
+    "attribute",
+    "tables",
+    ("first", "int", "first texel in the texture of attributes: low part"),
+    ("first_high", "int", "high part"),
+    ("base", "int", "index of the geometry's first primitive among the records of its kind: low part"),
+    ("base_high", "int", "high part"),
+    ("width", "int", "texels a primitive; 0: it has no such attribute"),
+    ("unused", "vec3", ""),
+    points_into="attributes",
 )
 #: The uniform block: what changes from draw to draw. Lengths are relative to `Scene.origin`.
 FRAME = _record(
@@ -266,6 +289,9 @@ FRAME = _record(
     ("instance_first", "float", ""),
     ("instance_surface_first", "float", ""),
     ("root_count", "float", "0: nothing but planes"),
+    ("attribute_first", "float", ""),
+    ("geometry_count", "float", "distinct geometries, those in world space among them"),
+    ("unused", "vec2", ""),
 )
 
 RECORDS = (
@@ -287,97 +313,56 @@ RECORDS = (
     MATERIAL,
     LIGHT,
     IMAGE,
+    ATTRIBUTE,
 )
 
-#: Numbers of the kinds of leaves; they are also the labels of the tree's leaves.
-KINDS = ("sphere", "cylinder", "cone", "disc", "triangle", "instance")
+#: Numbers of the kinds: those of primitives are also the labels of the tree's leaves. Planes stand in no tree.
+KINDS = ("sphere", "cylinder", "cone", "disc", "triangle", "instance", "plane")
 
-_KIND_BITS = 3
-_COUNT_BITS = 5
-MAX_LEAF_SIZE = (1 << _COUNT_BITS) - 1
-_LOW_BITS = 24
+#: Third number of a sphere's `rotation` where the other two are the uv of all of it: no rotation is as long.
+FIXED_UV = 4.0
+
+KIND_BITS = 3
+COUNT_BITS = 5
+MAX_LEAF_SIZE = (1 << COUNT_BITS) - 1
+LOW_BITS = 24
 
 
 def split_index(index):
     """Split non-negative integers below 2^40 into two parts below 2^24 that float32 holds exactly: (low, high)."""
     index = np.asarray(index, np.int64)
-    return index & ((1 << _LOW_BITS) - 1), index >> _LOW_BITS
+    return index & ((1 << LOW_BITS) - 1), index >> LOW_BITS
 
 
 def pack_leaf(kind, count, index_high):
     """The `leaf` field of a node: kind, number of primitives and the high part of the index (below 2^16) in one
     number."""
-    return kind + (np.asarray(count) << _KIND_BITS) + (np.asarray(index_high) << (_KIND_BITS + _COUNT_BITS))
+    return kind + (np.asarray(count) << KIND_BITS) + (np.asarray(index_high) << (KIND_BITS + COUNT_BITS))
+
+
+def most_texels(max_texture_size):
+    """How many texels a data texture can have on a device: GLSL counts them with 32 bits."""
+    return min(DATA_WIDTH * max_texture_size, (1 << 31) - 1)
+
+
+def next_start(texels):
+    """The first texel from number `texels` on at which records may begin: one whose number float32 holds."""
+    return texels if texels < 1 << LOW_BITS else -(-texels // DATA_WIDTH) * DATA_WIDTH
+
+
+def data_texture(texels):
+    """A data texture of zeros, float32 (height, width, 4), for at least one texel, in rows of the fixed width."""
+    width = min(max(texels, 1), DATA_WIDTH)
+    return np.zeros((-(-max(texels, 1) // width), width, 4), np.float32)
+
+
+def records_of(texture, record, first=0):
+    """A view of a data texture as an array (n,) of all records that it has room for from texel `first` on."""
+    texels = texture.reshape(-1, 4)[first:]
+    count = len(texels) // record.texels
+    return texels[: count * record.texels].reshape(-1).view(record.dtype)
 
 
 def shared(record):
     """Whether other records lie in the same texture, so that this one starts at `frame_<record>_first`."""
     return sum(other.texture == record.texture for other in RECORDS) > 1
-
-
-def glsl_struct(record):
-    """GLSL struct of a record."""
-    members = "".join(f"  {field.type} {field.name};\n" for field in record.fields)
-    return f"struct {record.struct_name} {{\n{members}}};\n"
-
-
-def _places(record):
-    """Each field of a record with where it lies: (field, number of its texel, its components as a swizzle)."""
-    offset = 0
-    for field in record.fields:
-        texel, first = divmod(offset, 4)
-        yield field, texel, _SWIZZLE[first : first + field.size]
-        offset += field.size
-
-
-def glsl_reader(record):
-    """GLSL struct of a record and `read_<record>(index)`, which fetches it from its data texture."""
-    base = f"int(frame_{record.name}_first) + " if shared(record) else ""
-    fetches = "".join(f"  vec4 t{k} = fetch_{record.texture}(texel + {k});\n" for k in range(record.texels))
-    values = ""
-    for field, texel, components in _places(record):
-        value = f"t{texel}.{components}"
-        values += f"  record.{field.name} = {f'int({value})' if field.type == 'int' else value};\n"
-    return (
-        f"{glsl_struct(record)}"
-        f"{record.struct_name} read_{record.name}(int index) {{\n"
-        f"  int texel = {base}index * {record.texels};\n"
-        f"{fetches}"
-        f"  {record.struct_name} record;\n"
-        f"{values}"
-        f"  return record;\n"
-        f"}}\n"
-    )
-
-
-def glsl_uniform_struct():
-    """GLSL struct of the uniform block: groups of four floats only, since vec3 members lie elsewhere in Metal."""
-    groups = "".join(f"  vec4 group_{k};\n" for k in range(FRAME.texels))
-    return f"struct {FRAME.struct_name} {{\n{groups}}};\n"
-
-
-def glsl_uniforms():
-    """GLSL names `frame_<field>` of the members of the uniform block `frame`."""
-    return "".join(f"#define frame_{field.name} (frame.group_{k}.{part})\n" for field, k, part in _places(FRAME))
-
-
-def glsl_fetch(texture):
-    """GLSL function `fetch_<texture>(texel)` over the sampler `<texture>_data`."""
-    return (
-        f"vec4 fetch_{texture}(int texel) {{\n"
-        f"  return texelFetch({texture}_data, ivec2(texel & {DATA_WIDTH - 1}, texel >> {DATA_WIDTH_BITS}), 0);\n"
-        f"}}\n"
-    )
-
-
-def glsl_constants():
-    """GLSL defines that go with the packing of nodes and indices."""
-    kinds = "".join(f"#define KIND_{kind.upper()} {number}\n" for number, kind in enumerate(KINDS))
-    return (
-        f"{kinds}"
-        f"#define LEAF_KIND(leaf) ((leaf) & {(1 << _KIND_BITS) - 1})\n"
-        f"#define LEAF_COUNT(leaf) (((leaf) >> {_KIND_BITS}) & {MAX_LEAF_SIZE})\n"
-        f"#define LEAF_HIGH(leaf) ((leaf) >> {_KIND_BITS + _COUNT_BITS})\n"
-        f"#define LEAF_INNER(high) ((high) << {_KIND_BITS + _COUNT_BITS})\n"
-        f"#define JOIN_INDEX(low, high) ((low) + ((high) << {_LOW_BITS}))\n"
-    )

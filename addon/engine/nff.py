@@ -25,24 +25,40 @@ LARGEST_SIDE = 1 << 16
 _POINTS = ("p0", "p1", "p2")
 _NORMALS = ("n0", "n1", "n2")
 
-__all__ = ["NffError", "NffFile", "read_nff", "write_nff"]
+__all__ = ["NffError", "NffFile", "Polygons", "read_nff", "write_nff"]
+
+
+@dataclass(frozen=True)
+class Polygons:
+    """Polygons one after the other: `size` (n,) int, the vertices of each; `points` (c, 3) float64 of all, and
+    their unit `normals` (c, 3), None for flat polygons; `material` (n,) int32; `one_sided` (n,) bool."""
+
+    size: np.ndarray
+    points: np.ndarray
+    normals: np.ndarray | None
+    material: np.ndarray
+    one_sided: np.ndarray
+
+    def __len__(self):
+        return len(self.size)
 
 
 @dataclass(frozen=True)
 class NffFile:
     """What an NFF file says: the scene, and the picture's `width` and `height` in pixels, for which its
-    camera is made."""
+    camera is made. `polygons`: those that are triangles in the scene, as they are in the file."""
 
     scene: Scene
     width: int
     height: int
+    polygons: tuple = ()
 
     def resized(self, width, height):
         """The same with another size of the picture; the angle from the bottom to the top row stays."""
         _, _, bottom, top = self.scene.camera.window
         half = (top - bottom) / 2.0 * width / height
         camera = replace(self.scene.camera, window=(-half, half, bottom, top))
-        return NffFile(replace(self.scene, camera=camera), width, height)
+        return replace(self, scene=replace(self.scene, camera=camera), width=width, height=height)
 
 
 def read_nff(path):
@@ -57,9 +73,8 @@ def read_nff(path):
     materials = _Materials(records, scene)
     _add_spheres(records, scene, materials)
     _add_cylinders_and_cones(records, scene, materials)
-    for keyword in ("p", "pp"):
-        _add_polygons(records, scene, materials, keyword)
-    return NffFile(scene, width, height)
+    polygons = tuple(_add_polygons(records, scene, materials, k) for k in ("p", "pp") if len(records.rows(k)))
+    return NffFile(scene, width, height, polygons)
 
 
 def _view(records):
@@ -224,36 +239,44 @@ def _add_cylinders_and_cones(records, scene, materials):
 
 
 def _add_polygons(records, scene, materials, keyword):
-    """The polygons `p`, or `pp` with normals, as triangles in the order of the file."""
+    """The `Polygons` of the records `p`, or `pp` with normals; into the scene go their triangles."""
     rows = records.rows(keyword)
-    if not len(rows):
-        return
-    width = 6 if keyword == "pp" else 3
-    vertices = records.numbers[records.start[rows]].astype(np.int64)
-    parts = []
-    for n in np.unique(vertices):  # all polygons with the same number of vertices at once
-        parts.append(_triangles(records, rows[vertices == n], int(n), width))
-    owner = np.concatenate([part[0] for part in parts])
+    size = records.numbers[records.start[rows]].astype(np.int64)
+    first = np.cumsum(size) - size
+    corners = _corners(records, rows, size, 6 if keyword == "pp" else 3)
+    owners, triangles = [], []
+    for n in np.unique(size):  # all polygons with the same number of vertices at once
+        polygons = np.flatnonzero(size == n)
+        owner, index = _triangles(records, rows[polygons], corners[first[polygons, None] + np.arange(n), :3])
+        owners.append(polygons[owner])
+        triangles.append(first[polygons[owner], None] + index)
+    owner = np.concatenate(owners)
     order = np.argsort(owner, kind="stable")
-    owner, corners = owner[order], np.concatenate([part[1] for part in parts])[order]
-    material, transmits = materials.of(owner)
-    columns = {name: corners[:, i, :3] for i, name in enumerate(_POINTS)}
+    owner, of_triangle = owner[order], corners[np.concatenate(triangles)[order]]
+    material, transmits = materials.of(rows)
+    columns = {name: of_triangle[:, i, :3] for i, name in enumerate(_POINTS)}
     if keyword == "pp":
-        columns |= {name: corners[:, i, 3:] for i, name in enumerate(_NORMALS)}
-    scene.add_triangles(material=material, one_sided=~transmits, **columns)
+        columns |= {name: of_triangle[:, i, 3:] for i, name in enumerate(_NORMALS)}
+    scene.add_triangles(material=material[owner], one_sided=~transmits[owner], **columns)
+    normals = corners[:, 3:] if keyword == "pp" else None
+    return Polygons(size, corners[:, :3], normals, material, ~transmits)
 
 
-def _triangles(records, rows, n, width):
-    """Record (k,) and corners (k, 3, width) of the triangles of the polygons `rows`, each of n vertices."""
-    corners = records.columns(rows, n * width, first=1).reshape(len(rows), n, width)
+def _corners(records, rows, size, width):
+    """The vertices (c, width) of the polygons `rows`, which have `size` (k,) each, with normals of length 1."""
+    begin = records.start[rows] + 1 - width * (np.cumsum(size) - size)
+    corners = records.numbers[np.repeat(begin, width * size) + np.arange(width * size.sum())].reshape(-1, width)
     if width == 6:
-        length = np.linalg.norm(corners[..., 3:], axis=-1, keepdims=True)
-        records.refuse(
-            (length < SMALLEST).any(axis=(1, 2)), rows, "a vertex normal is 0, expected one with a direction"
-        )
-        corners[..., 3:] /= length
+        length = np.linalg.norm(corners[:, 3:], axis=1, keepdims=True)
+        zero = np.logical_or.reduceat(length[:, 0] < SMALLEST, np.cumsum(size) - size)
+        records.refuse(zero, rows, "a vertex normal is 0, expected one with a direction")
+        corners[:, 3:] /= length
+    return corners
+
+
+def _triangles(records, rows, points):
+    """The triangles of polygons `rows` with points (k, n, 3): which of them each belongs to, and its vertices."""
     try:
-        owner, index = triangulate(corners[..., :3])
+        return triangulate(points)
     except PolygonError as error:
         raise records.error(rows[error.index], f"{error.reason}, expected a planar polygon") from None
-    return rows[owner], corners[owner[:, None], index]

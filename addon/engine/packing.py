@@ -5,26 +5,26 @@ Nothing here draws. Lengths become relative to an origin near the camera, so tha
 people look.
 """
 
-import time
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import bvh, layout
+from . import bvh, instance_packing, layout
 from .errors import SceneError
 from .image_packing import pack_images
-from .primitives import BY_KIND, Planes, Similarity, invertible
-from .scene import LightKind, Material
-from .tree_packing import build_tree, moved_boxes, node_records
-
-_INSTANCE = layout.KINDS.index("instance")
+from .material_packing import MaterialTable, check_image
+from .plan import PLANE_ATTRIBUTES, check_texels, make_plan
+from .primitives import BY_KIND, Similarity, invertible
+from .scene import LightKind, Visibility
+from .timing import timed
+from .tree_packing import TreePacker, pieces
 
 
 @dataclass
 class PackedScene:
     """What a session uploads. `textures`: float32 (height, width, 4) by name. `frame`: values of the `Frame` record
     that depend on the scene alone. `features` and `constants`: of the shader. `origin` (3,): what positions are
-    relative to."""
+    relative to. `statistics`: see `Session.statistics`."""
 
     origin: np.ndarray
     textures: dict
@@ -38,19 +38,15 @@ class PackedScene:
 def pack(scene, max_texture_size):
     """Pack a scene for a device whose textures are at most `max_texture_size` wide and high.
 
-    Raises SceneError when the scene has no camera, refers to what does not exist, or does not fit.
+    Raises SceneError when the scene has no camera, refers to what does not exist, or does not fit; the latter before a
+    tree is built.
     """
     if scene.camera is None:
         raise SceneError("the scene has no camera; add one")
-    _check_matrices(scene)
-    started = time.perf_counter()
-    origin = scene_origin(scene)
-    geometries = _distinct_geometries(scene)
-    trees = [build_tree(geometry, origin if geometry is scene.shapes else None) for geometry in geometries]
-    built = time.perf_counter() - started
-    packer = _Packer(scene, origin, geometries, trees, max_texture_size)
-    packed = packer.pack()
-    packed.statistics["seconds"] = {"build": built}
+    seconds = {}
+    with timed(seconds, "build"):
+        packed = _Packer(scene, layout.most_texels(max_texture_size)).pack()
+    packed.statistics["seconds"] = seconds
     return packed
 
 
@@ -63,11 +59,11 @@ def _check_matrices(scene):
     left, right, bottom, top = scene.camera.window
     if not np.isfinite(scene.camera.window).all() or left == right or bottom == top:
         raise SceneError(f"the camera's window {tuple(scene.camera.window)} has no width or no height")
-    matrices = np.array([instance.matrix for instance in scene.instances], np.float64).reshape(-1, 4, 4)
-    bad = ~invertible(matrices)
-    if bad.any():
-        name = scene.instances[int(np.argmax(bad))].name
-        raise SceneError(f"instance {name!r} has a scale of 0, axes in one plane or a matrix that is not finite")
+    for placed in scene.instances:
+        if not all(invertible(placed.matrices[rows]).all() for rows in pieces(len(placed))):
+            raise SceneError(
+                f"instance {placed.name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
+            )
 
 
 def scene_origin(scene):
@@ -79,18 +75,19 @@ def scene_origin(scene):
     if not len(places):
         return np.zeros(3)
     distance = float(np.quantile(np.linalg.norm(places - eye, axis=1), 0.25, method="lower"))
-    grid = 2.0 ** (np.ceil(np.log2(max(distance, 1e-30))) + 3.0)
+    grid = 2.0 ** (np.ceil(np.log2(max(distance, 1e-30))) + 2.0)
     return np.round(eye / grid) * grid
 
 
 def _sampled_places(scene, most=1000):
     """Where things are, (n, 3): the middle of at most `most` primitives of a kind, the origin of as many instances."""
-    places = []
+    places = [np.zeros((0, 3))]
     for _, part in scene.shapes.kinds():
         lower, upper = part.take(_spread(len(part), most)).bounds()
         places.append((lower + upper) / 2.0)
-    picked = [scene.instances[i].matrix for i in _spread(len(scene.instances), most)]
-    places.append(np.array(picked, np.float64).reshape(-1, 4, 4)[:, :3, 3])
+    if scene.instances:
+        stands = np.concatenate([placed.matrices[:, :3, 3] for placed in scene.instances])
+        places.append(stands[_spread(len(stands), most)])
     return np.concatenate(places)
 
 
@@ -99,178 +96,114 @@ def _spread(count, most):
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.int64))
 
 
-def _distinct_geometries(scene):
-    """The world's shapes first (if any), then each instanced geometry once; those without primitives are left out."""
-    geometries = [scene.shapes] if len(scene.shapes) else []
-    seen = {id(geometry) for geometry in geometries}
-    for instance in scene.instances:
-        if id(instance.geometry) not in seen and len(instance.geometry):
-            seen.add(id(instance.geometry))
-            geometries.append(instance.geometry)
-    return geometries
-
-
 class _Packer:
-    """State while a scene is packed: what each geometry's nodes and records begin at."""
+    """State while a scene is packed. The constructor refuses what cannot be rendered, before anything large is made."""
 
-    def __init__(self, scene, origin, geometries, trees, max_texture_size):
-        self.scene, self.origin, self.trees = scene, origin, trees
-        self.index = {id(geometry): i for i, geometry in enumerate(geometries)}
-        self.limit = layout.DATA_WIDTH * max_texture_size
-        self.texels, self.frame, self.warnings = {}, {}, []
-        self.world_only = not scene.instances
-        self.materials = list(scene.materials) or [Material()]
-        self._blocks = {}
+    def __init__(self, scene, limit):
+        self.scene, self.limit = scene, limit
+        self.plan = make_plan(scene)
+        self.plan.check(limit)
+        _check_matrices(scene)
+        self.materials = MaterialTable(scene, self.plan)
+        check_image(scene, scene.world.image, "the world")
+        self.origin = scene_origin(scene)
+        self.textures, self.frame, self.warnings = {}, {}, []
 
     def pack(self):
-        instances, top = self._instances()
-        self._nodes(top)
-        self._primitives()
-        if not self.world_only:
-            self._records("instances", instance=instances[0], instance_surface=instances[1])
-        planes = self._planes()
-        images = self._images()
-        self._records(
-            "tables",
-            material=self._materials(),
-            light=self._lights(),
-            plane=planes[0],
-            plane_surface=planes[1],
-            image=images,
-        )
+        plan = self.plan
+        attributes = self._attribute_texels()
+        trees = TreePacker(plan, self.origin)
+        for number in plan.built:
+            trees.add(number, attributes)
+        with timed(trees.seconds, "instances"):
+            top = self._instances(trees.trees, attributes)
+        trees.finish(top)
+        self.textures |= trees.textures
+        planes = self._tables()
         self._warn_of_darkness()
         self.frame |= {
             "light_count": len(self.scene.lights),
-            "plane_count": len(planes[0]),
-            "root_count": len(self.trees),
+            "plane_count": len(planes),
+            "root_count": len(trees.trees),
+            "geometry_count": len(plan.geometries),
             "world_color": self.scene.world.color,
-            "world_image": self._checked_image(self.scene.world.image, "the world"),
+            "world_image": self.scene.world.image,
         }
+        depth = max((tree.depth for tree in trees.trees.values()), default=0) + (top.depth if top is not None else 0)
         return PackedScene(
             origin=self.origin,
-            textures={name: self._texture(name, texels) for name, texels in self.texels.items()},
+            textures=self.textures,
             frame=self.frame,
-            features=self._features(planes[0]),
-            constants={"BVH_STACK_SIZE": self._stack_size(top)},
-            statistics=self._statistics(top),
+            features=self._features(planes),
+            # References that can wait in a traversal, rounded up so that few programs are made.
+            constants={"BVH_STACK_SIZE": -(-(depth + 1) // 8) * 8},
+            statistics=self._statistics(trees, top, depth),
             warnings=self.warnings,
         )
 
-    # Trees
+    def _attribute_texels(self):
+        """Where the values of attributes go, (n, 4): the texels of their texture. Planes' are written already."""
+        attributes = self.plan.attributes
+        if not attributes.names:
+            return np.zeros((0, 4), np.float32)
+        self.textures["attributes"] = layout.data_texture(attributes.texels)
+        texels = self.textures["attributes"].reshape(-1, 4)
+        planes = self.scene.joined_planes()
+        for (name, *place), first in attributes.first.items():
+            if tuple(place) == PLANE_ATTRIBUTES:
+                texels[first : first + len(planes)] = planes.attributes[name][:, 0]
+        return texels
 
-    def _instances(self):
-        """The upper tree and the two instance records in the order of its leaves; (None, None) and None without
-        instances."""
-        if self.world_only:
-            return None, None
-        placed = [i for i in self.scene.instances if id(i.geometry) in self.index]
-        matrices = np.array([i.matrix for i in placed], np.float64).reshape(-1, 4, 4)
-        which = [self.index[id(i.geometry)] for i in placed]
-        first = [self._material_block(i) for i in placed]
-        if len(self.scene.shapes):
-            matrices = np.concatenate([np.eye(4)[None], matrices])
-            which, first = [0, *which], [0, *first]
-            matrices[1:, :3, 3] -= self.origin
-        else:
-            matrices[:, :3, 3] -= self.origin
-        which = np.array(which, np.int64)
-        bounds = np.array([t.tree.bounds for t in self.trees], np.float64).reshape(-1, 2, 3)
-        lower, upper = moved_boxes(bounds[which], matrices)
-        top = bvh.build(lower, upper, leaf_size=1)
-        return self._instance_records(matrices[top.order], which[top.order], np.array(first)[top.order], top), top
-
-    def _material_block(self, instance):
-        """Index of the material record of the instance's slot 0; instances with the same materials share a block."""
-        slots = self.trees[self.index[id(instance.geometry)]].slots
-        if slots > len(instance.materials):
-            raise SceneError(
-                f"instance {instance.name!r} has {len(instance.materials)} materials, its geometry uses slot "
-                f"{slots - 1}"
-            )
-        block = tuple(instance.materials)
-        if block not in self._blocks:
-            self._check_slots(np.array(block), f"instance {instance.name!r}")
-            if len(block) == 1:
-                self._blocks[block] = block[0]
-            else:
-                self._blocks[block] = len(self.materials)
-                self.materials += [self.materials[slot] for slot in block]
-        return self._blocks[block]
-
-    def _instance_records(self, matrices, which, first_material, top):
-        starts = self._node_starts(top)
-        to_object = np.linalg.inv(matrices)
-        hit, surface = layout.INSTANCE.zeros(len(matrices)), layout.INSTANCE_SURFACE.zeros(len(matrices))
-        for row, axis in enumerate("xyz"):
-            hit[f"to_object_{axis}"] = to_object[:, row]
-            surface[f"to_world_{axis}"] = matrices[:, row]
-        hit["root"], hit["root_high"] = layout.split_index(starts[which])
-        hit["first_material"] = first_material
-        return hit, surface
-
-    def _node_starts(self, top):
-        """Index of the root node of each geometry's tree: the upper tree, if any, comes first."""
-        sizes = [len(top) if top is not None else 0, *(len(t.tree) for t in self.trees)]
-        return np.cumsum(sizes)[:-1]
-
-    def _nodes(self, top):
-        bases, kinds = np.zeros(len(BY_KIND), np.int64), np.arange(len(BY_KIND))
-        nodes = []
-        if top is not None:
-            nodes.append(node_records(top, 0, np.zeros(1, np.int64), np.array([_INSTANCE])))
-        for start, geometry in zip(self._node_starts(top), self.trees, strict=True):
-            nodes.append(node_records(geometry.tree, start, bases, kinds))
-            for label, (hit, _) in geometry.records.items():
-                bases[label] += len(hit)
-        self.texels["nodes"] = _texels(np.concatenate(nodes) if nodes else layout.NODE.zeros(1))
-
-    def _primitives(self):
-        for label, cls in enumerate(BY_KIND):
-            parts = [t.records[label] for t in self.trees if label in t.records]
-            if parts:
-                for record, arrays in zip((cls.record, cls.surface_record), zip(*parts, strict=True), strict=True):
-                    self.texels[record.texture] = _texels(np.concatenate(arrays))
+    def _instances(self, trees, attributes):
+        """Write the records of the instances; the upper tree, None without instances."""
+        plan = self.plan
+        if not plan.placed:
+            return None
+        placed = instance_packing.blocks(self.scene, plan)
+        instances = instance_packing.place(placed, plan, self.materials, self.origin)
+        bounds, roots = np.zeros((len(plan.geometries), 2, 3)), np.zeros(len(plan.geometries), np.int64)
+        for number, tree in trees.items():
+            bounds[number], roots[number] = tree.bounds, tree.root
+        top = instance_packing.upper_tree(instances, bounds)
+        self.frame |= {"instance_first": 0, "instance_surface_first": plan.instance_surface_first}
+        texture = layout.data_texture(plan.instance_texels)
+        hits = layout.records_of(texture, layout.INSTANCE)[: plan.leaves]
+        surfaces = layout.records_of(texture, layout.INSTANCE_SURFACE, plan.instance_surface_first)
+        instance_packing.write_records(hits, surfaces, instances, top.order, roots)
+        instance_packing.write_attributes(attributes, placed, plan.attributes, top.order)
+        self.textures["instances"] = texture
+        return top
 
     # What is few
 
-    def _records(self, texture, **records):
-        """Several kinds of records in one texture, each from a first texel of its own."""
-        texels = []
+    def _tables(self):
+        """Write the records that share the texture `tables`; those of the planes."""
+        planes, plane_surfaces = self._planes()
+        records = {
+            "material": self.materials.records(self.plan.attributes),
+            "light": self._lights(),
+            "plane": planes,
+            "plane_surface": plane_surfaces,
+            "image": self._images(),
+            "attribute": self.plan.attributes.directory,
+        }
+        end = 0
         for name, array in records.items():
-            self.frame[f"{name}_first"] = sum(len(t) for t in texels)
-            texels.append(_texels(array))
-        self.texels[texture] = np.concatenate(texels)
+            self.frame[f"{name}_first"] = layout.next_start(end)
+            end = self.frame[f"{name}_first"] + array.nbytes // 16
+        check_texels(end, self.limit, "materials, lights, planes and images")
+        texture = self.textures["tables"] = layout.data_texture(end)
+        for name, array in records.items():
+            texels = array.view(np.float32).reshape(-1, 4)
+            first = self.frame[f"{name}_first"]
+            texture.reshape(-1, 4)[first : first + len(texels)] = texels
+        return planes
 
     def _planes(self):
-        if not self.scene.planes:
+        planes = self.scene.joined_planes()
+        if planes is None:
             return layout.PLANE.zeros(0), layout.PLANE_SURFACE.zeros(0)
-        planes = Planes.concatenate(self.scene.planes).transformed(Similarity(np.eye(3), 1.0, -self.origin))
-        self._check_slots(planes.material, "a plane")
-        return planes.records()
-
-    def _check_slots(self, material, what):
-        count = max(len(self.scene.materials), 1)  # a scene without materials has the default one
-        bad = (material < 0) | (material >= count)
-        if bad.any():
-            raise SceneError(f"{what} uses material {int(material[np.argmax(bad)])}, the scene has {count}")
-
-    def _materials(self):
-        if len(self.scene.shapes):
-            for _, part in self.scene.shapes.kinds():
-                self._check_slots(part.material, f"a {part.kind}")
-        records = layout.MATERIAL.zeros(len(self.materials))
-        for name in records.dtype.names:
-            if name != "unused":
-                records[name] = [getattr(material, name) for material in self.materials]
-        for number, material in enumerate(self.materials):
-            for name in ("diffuse_image", "reflect_image", "transmit_image", "glow_image"):
-                self._checked_image(getattr(material, name), f"material {number}")
-        return records
-
-    def _checked_image(self, image, user):
-        if image >= len(self.scene.images):
-            raise SceneError(f"{user} uses image {image}, the scene has {len(self.scene.images)}")
-        return image
+        return planes.transformed(Similarity(np.eye(3), 1.0, -self.origin)).records()
 
     def _lights(self):
         records = layout.LIGHT.zeros(len(self.scene.lights))
@@ -286,13 +219,14 @@ class _Packer:
         """Image records; their texels go in the texture `images`, reduced where they would not fit."""
         records, texels, warnings = pack_images(self.scene.images, self.limit)
         if len(texels):
-            self.texels["images"] = texels
+            self.textures["images"] = layout.data_texture(len(texels))
+            self.textures["images"].reshape(-1, 4)[: len(texels)] = texels
         self.warnings += warnings
         return records
 
     def _warn_of_darkness(self):
-        diffuse = any(max(material.diffuse) > 0.0 for material in self.materials)
-        if diffuse and not self.scene.lights and (self.trees or self.scene.planes):
+        diffuse = any(max(material.diffuse) > 0.0 for material in self.materials.materials)
+        if diffuse and not self.scene.lights and (len(self.plan.built) or self.scene.planes):
             self.warnings.append(
                 "the scene has no light: the sky and what glows are seen but light nothing, so that other surfaces are "
                 "black; add a light"
@@ -300,57 +234,36 @@ class _Packer:
 
     # The whole
 
-    def _texture(self, name, texels):
-        """Texels (n, 4) as rows of the fixed width. Raises SceneError when they do not fit a texture."""
-        count = max(len(texels), 1)
-        if count > self.limit:
-            raise SceneError(
-                f"the scene needs {count} texels of {name}, a texture of this device holds {self.limit}; "
-                "render it in parts or with fewer primitives"
-            )
-        width = min(count, layout.DATA_WIDTH)
-        height = -(-count // width)
-        padded = np.zeros((height * width, 4), np.float32)
-        padded[: len(texels)] = texels
-        return padded.reshape(height, width, 4)
-
     def _features(self, planes):
-        features = {
-            f"HAS_{cls.kind.upper()}"
-            for label, cls in enumerate(BY_KIND)
-            if any(label in t.records for t in self.trees)
-        }
+        totals = self.plan.counts.sum(axis=0)
+        features = {f"HAS_{cls.kind.upper()}" for cls, count in zip(BY_KIND, totals, strict=True) if count}
+        features |= self.materials.features()
         if len(planes):
             features.add("HAS_PLANE")
-        if not self.world_only:
+        if self.plan.placed:
             features.add("HAS_INSTANCES")
-        if any(max(m.diffuse_image, m.reflect_image, m.transmit_image, m.glow_image) >= 0 for m in self.materials):
-            features.add("HAS_IMAGES")
         if self.scene.world.image >= 0:
             features.add("HAS_WORLD_IMAGE")
-        if any(max(m.absorption) > 0.0 for m in self.materials):
-            features.add("HAS_ABSORPTION")
+        seen = {int(p.visibility) for p in self.plan.placed} | set(np.unique(planes["visibility"]).astype(int).tolist())
+        if any(~bits & Visibility.ALL for bits in seen):
+            features.add("HAS_VISIBILITY")
+        if any(bits & Visibility.HOLDOUT for bits in seen):
+            features.add("HAS_HOLDOUT")
+        if any(bits & Visibility.SHADOW_CATCHER for bits in seen):
+            features.add("HAS_SHADOW_CATCHER")
         return frozenset(features)
 
-    def _stack_size(self, top):
-        """References that can wait in a traversal, rounded up so that few programs are made."""
-        depth = max((t.tree.depth for t in self.trees), default=0) + (top.depth if top is not None else 0)
-        return -(-(depth + 1) // 8) * 8
-
-    def _statistics(self, top):
-        trees = [t.tree for t in self.trees] + ([top] if top is not None else [])
-        deepest = max((t.tree.depth for t in self.trees), default=0)
-        main = max(trees, key=lambda tree: len(tree.order), default=None)
+    def _statistics(self, trees, top, depth):
+        plan = self.plan
+        nodes = sum(tree.nodes for tree in trees.trees.values()) + (len(top) if top is not None else 0)
+        if plan.largest in trees.trees:
+            cost = trees.trees[plan.largest].sah_cost
+        else:
+            cost = float(bvh.sah_cost(top)) if top is not None else 0.0
         return {
             "primitives": self.scene.primitive_counts(),
-            "bvh": {
-                "nodes": sum(len(tree) for tree in trees),
-                "depth": deepest + (top.depth if top is not None else 0),
-                "sah_cost": float(bvh.sah_cost(main)) if main is not None and len(main) else 0.0,
-            },
+            "instances": sum(map(len, plan.placed)),
+            "geometries": len({id(p.geometry) for p in plan.placed}),
+            "bvh": {"nodes": nodes, "depth": depth, "sah_cost": cost},
+            "build": trees.seconds,
         }
-
-
-def _texels(records):
-    """Structured records (n,) as texels (n * texels of the record, 4) float32."""
-    return np.ascontiguousarray(records).view(np.float32).reshape(-1, 4)

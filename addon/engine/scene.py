@@ -11,6 +11,7 @@ import numpy as np
 
 from .errors import SceneError
 from .primitives import BY_KIND, Cones, Cylinders, Discs, Planes, Spheres, Triangles
+from .visibility import Visibility
 
 
 def _checked_color(name, value):
@@ -71,9 +72,10 @@ class Material:
     """The paper's colour class (3.1.1): glow g, reflect r, transmit t, diffuse d, index n0, and absorption.
 
     Colours are scene-linear RGB; each `*_image` is the index of an image in `Scene.images` that multiplies the colour
-    by the surface's uv, -1 for none. With `fresnel` the mirror ray has weight r F, the refracted one t (1 - F), and
-    the diffuse share is d (1 - F), F the exact unpolarised reflectance; without it the shares are the constants, as
-    NFF has them.
+    by the surface's uv, -1 for none; each `*_attribute` the name of an attribute whose rgb multiplies it, "" for none:
+    the primitive's where its geometry has it, else the instance's, else 0. With `fresnel` the mirror ray has weight r
+    F, the refracted one t (1 - F), and the diffuse share is d (1 - F), F the exact unpolarised reflectance; without it
+    the shares are the constants, as NFF has them.
     """
 
     diffuse: tuple = (0.8, 0.8, 0.8)
@@ -89,7 +91,13 @@ class Material:
     reflect_image: int = -1
     transmit_image: int = -1
     glow_image: int = -1
+    diffuse_attribute: str = ""
+    reflect_attribute: str = ""
+    transmit_attribute: str = ""
+    glow_attribute: str = ""
     bounds_body: bool = True  # False: a single sheet, which bends light but is no border of a medium
+    cull_back: bool = False  # rays that meet the back pass through, shadow rays only with the next
+    cull_back_shadow: bool = False
 
     def __post_init__(self):
         for name in ("diffuse", "reflect", "transmit", "glow", "absorption", "highlight"):
@@ -225,19 +233,50 @@ class Geometry:
                 self._parts[cls] = [cls.concatenate(self._parts[cls])]
                 yield label, self._parts[cls][0]
 
+    def counts(self):
+        """Number of primitives by kind; an absent kind is left out."""
+        return {cls.kind: sum(map(len, parts)) for cls, parts in self._parts.items() if parts}
+
     def __len__(self):
-        return sum(len(part) for parts in self._parts.values() for part in parts)
+        return sum(self.counts().values())
 
 
 @dataclass(frozen=True)
-class Instance:
-    """A geometry in the world: `matrix` (4, 4) float64 object to world, any invertible affine; `materials` the index
-    into `Scene.materials` for each material slot."""
+class Instances:
+    """A geometry that stands in the world many times.
+
+    `matrices` (n, 4, 4) float, or one (4, 4): object to world, any invertible affine. `materials`: the index into
+    `Scene.materials` for each material slot; None where the slots are the scene's materials themselves. `visibility`:
+    of all. `attributes`: arrays (n, 4) float32 by name, a value per instance, or (4,) for all. Raises SceneError for
+    arrays of other shapes.
+    """
 
     geometry: Geometry
-    matrix: np.ndarray
-    materials: tuple = (0,)
+    matrices: np.ndarray
+    materials: tuple | None = (0,)
     name: str = ""
+    visibility: Visibility = Visibility.ALL
+    attributes: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        matrices = np.asarray(self.matrices)
+        matrices = matrices if matrices.dtype in (np.float32, np.float64) else matrices.astype(np.float64)
+        if matrices.ndim not in (2, 3) or matrices.shape[-2:] != (4, 4):
+            raise SceneError(f"instances {self.name!r}: matrices have shape {matrices.shape}, expected (n, 4, 4)")
+        object.__setattr__(self, "matrices", matrices.reshape(-1, 4, 4))
+        object.__setattr__(self, "attributes", {n: self._per_instance(n, v) for n, v in self.attributes.items()})
+
+    def _per_instance(self, name, values):
+        values = np.asarray(values, np.float32)
+        if values.shape not in ((4,), (1, 4), (len(self), 4)):
+            expected = f"({len(self)}, 4) or (4,)"
+            raise SceneError(
+                f"instances {self.name!r}: attribute {name!r} has shape {values.shape}, expected {expected}"
+            )
+        return np.broadcast_to(values, (len(self), 4))
+
+    def __len__(self):
+        return len(self.matrices)
 
 
 @dataclass
@@ -245,8 +284,8 @@ class Scene:
     """Everything a picture is made from.
 
     Shapes that keep their form (see `keeps_shapes`) go straight into `shapes`, one geometry in world space whose
-    material slots are the scene's materials. Meshes and stretched shapes are instances. `planes` is a list of
-    infinite planes.
+    material slots are the scene's materials. Meshes and stretched shapes are geometries of `instances`, a list of
+    `Instances`. `planes` is a list of infinite planes.
     """
 
     camera: Camera | None = None
@@ -327,15 +366,17 @@ class Scene:
     def add_light(self, light):
         self.lights.append(light)
 
+    def joined_planes(self):
+        """All planes as one `Planes`, None without any."""
+        return Planes.concatenate(self.planes) if self.planes else None
+
     def primitive_counts(self):
         """Number of primitives in the picture by kind; an instanced one counts each time, an absent kind not at all."""
         counts = {}
-        per_geometry = {}
-        for geometry in [self.shapes, *(instance.geometry for instance in self.instances)]:
-            if id(geometry) not in per_geometry:
-                per_geometry[id(geometry)] = {part.kind: len(part) for _, part in geometry.kinds()}
-            for kind, count in per_geometry[id(geometry)].items():
-                counts[kind] = counts.get(kind, 0) + count
+        for geometry, times in [(self.shapes, 1), *((placed.geometry, len(placed)) for placed in self.instances)]:
+            for kind, count in geometry.counts().items():
+                counts[kind] = counts.get(kind, 0) + count * times
+        counts = {kind: count for kind, count in counts.items() if count}
         if self.planes:
             counts["plane"] = sum(len(planes) for planes in self.planes)
         return counts

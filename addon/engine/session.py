@@ -11,9 +11,12 @@ from .errors import ConicError, SceneError
 from .film import UNENDED_ALPHA, Film
 from .packing import pack
 from .settings import Settings
+from .timing import timed
 
 #: Surfaces that a tinted shadow ray may pass before it counts as blocked.
 _TINTED_SHADOW_SURFACES = 32
+
+_STAGES = ("build", "upload", "compile", "trace", "first_picture")
 
 _UNENDED = (
     "some pixels are too dark: this driver gives up samples that take very many steps; use a GPU, fewer lights, "
@@ -36,8 +39,8 @@ class Session:
     def __init__(self, device):
         self.device = device
         self.warnings = []
-        self._textures, self._film, self._packed, self._program = {}, None, None, None
-        self._seconds = {"build": 0.0, "upload": 0.0, "compile": 0.0, "trace": 0.0}
+        self._textures, self._texture_bytes, self._film, self._packed, self._program = {}, {}, None, None, None
+        self._seconds = dict.fromkeys(_STAGES, 0.0)
 
     def load(self, scene, settings):
         """Build the trees, upload the scene and compile its program, in place of what was loaded before."""
@@ -46,22 +49,25 @@ class Session:
 
     def build(self, scene, settings):
         """The part of `load` that is the processor's work alone; it needs no GPU context and no particular thread."""
+        self._loading_since = time.perf_counter()
         self._packed = pack(scene, self.device.max_texture_size)
         self.settings, self.camera = settings, scene.camera
         self.warnings = list(self._packed.warnings)
         self._counts = settings.count_rays or settings.may_drop
         self._transmits = any(max(material.transmit) > 0.0 for material in scene.materials)
-        self._seconds = dict.fromkeys(self._seconds, 0.0) | self._packed.statistics["seconds"]
+        self._seconds = dict.fromkeys(_STAGES, 0.0) | self._packed.statistics["seconds"]
 
     def upload(self):
         """The rest of `load`: textures and program of what was built."""
         textures = self._packed.textures
-        self._gpu_bytes = sum(texels.nbytes for texels in textures.values())
-        with self._timed("upload"):
+        self._texture_bytes = {name: texels.nbytes for name, texels in textures.items()}
+        with timed(self._seconds, "upload"):
             self._release_textures()
-            self._textures = {name: self.device.texture(texels) for name, texels in textures.items()}
-        self._packed.textures = {}  # they have been copied
-        with self._timed("compile"):
+            while textures:  # one after the other: each is freed here as soon as it is there
+                name, texels = textures.popitem()
+                self._textures[name] = self.device.texture(texels)
+                del texels
+        with timed(self._seconds, "compile"):
             self._program = self.device.program(self._source())
         self._drawn = False
 
@@ -102,14 +108,14 @@ class Session:
         )
         self._reported_drops = False
         if not self._drawn:  # drivers leave much of their work to the first draw: make it a small one
-            with self._timed("compile"):
+            with timed(self._seconds, "compile"):
                 self._draw_outside()
             self._drawn = True
 
     def step(self, seconds):
         """Draw tiles for about `seconds`; True while there is more to draw."""
         film, deadline = self._film, time.perf_counter() + seconds
-        with self._timed("trace"):
+        with timed(self._seconds, "trace"):
             while not film.finished:
                 tile = film.next_tile()
                 started = time.perf_counter()
@@ -118,6 +124,8 @@ class Session:
                 film.advance(tile, time.perf_counter() - started)
                 if time.perf_counter() > deadline:
                     break
+        if not self._seconds["first_picture"] and (film.sample > 0 or film.finished):
+            self._seconds["first_picture"] = time.perf_counter() - self._loading_since
         if film.finished:
             self._report_drops()
         return not film.finished
@@ -139,12 +147,22 @@ class Session:
         return pixels
 
     def statistics(self):
-        """Counts, seconds and bytes, as the command line writes them; `rays` only when they were counted."""
+        """What was loaded and drawn, as the command line writes it and the panel shows it; plain numbers and text.
+
+        primitives: number by kind, those of instances each time. instances: how many stand in the scene, of how many
+        different geometries. bvh: nodes of all trees, depth of the deepest path, sah_cost of the largest tree.
+        seconds: build (trees and records), upload, compile, trace; first_picture: from the start of loading until each
+        pixel had a sample, 0 before that. build: the seconds of building by stage. textures: bytes by name; gpu_bytes:
+        those and the film's. device: its name. rays, only when they are counted: by kind.
+        """
         statistics = {
-            "primitives": self._packed.statistics["primitives"],
-            "bvh": self._packed.statistics["bvh"],
+            **{
+                name: self._packed.statistics[name]
+                for name in ("primitives", "instances", "geometries", "bvh", "build")
+            },
             "seconds": dict(self._seconds),
-            "gpu_bytes": int(self._gpu_bytes + self._film_bytes()),
+            "gpu_bytes": sum(self._texture_bytes.values()) + self._film_bytes(),
+            "textures": dict(self._texture_bytes),
             "device": self.device.name,
         }
         if self._counts:
@@ -219,9 +237,6 @@ class Session:
             record[name] = value
         return record.view(np.float32)
 
-    def _timed(self, stage):
-        return _Timer(self._seconds, stage)
-
 
 def _check_size(width, height, border, limit):
     """Raise SceneError for a picture without pixels, a border outside of it, or more than `limit` pixels a side."""
@@ -232,19 +247,6 @@ def _check_size(width, height, border, limit):
         raise SceneError(f"the border {(x, y, columns, rows)} is not within a picture of {width} x {height} pixels")
     if max(columns, rows) > limit:
         raise SceneError(f"a picture of {columns} x {rows} pixels is larger than this device's {limit} x {limit}")
-
-
-class _Timer:
-    """Adds the time spent in a with statement to a table of seconds."""
-
-    def __init__(self, table, stage):
-        self._table, self._stage = table, stage
-
-    def __enter__(self):
-        self._started = time.perf_counter()
-
-    def __exit__(self, *_):
-        self._table[self._stage] += time.perf_counter() - self._started
 
 
 class CancelledError(ConicError):

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from . import layout
+from . import layout, record_glsl
 
 SHADER_FOLDER = Path(__file__).resolve().parents[1] / "shaders"
 
@@ -25,12 +25,17 @@ SHADER_FOLDER = Path(__file__).resolve().parents[1] / "shaders"
 FEATURES = frozenset(
     [f"HAS_{kind.upper()}" for kind in layout.KINDS if kind != "instance"]
     + [
-        "HAS_PLANE",
         "HAS_INSTANCES",
         "HAS_IMAGES",
         "HAS_WORLD_IMAGE",
         "HAS_ABSORPTION",
+        "HAS_ATTRIBUTES",
+        "HAS_VISIBILITY",
+        "HAS_HOLDOUT",
+        "HAS_SHADOW_CATCHER",
+        "HAS_CULLING",
         "TINTED_SHADOWS",
+        "CULLED_SHADOWS",
         "COUNT_RAYS",
     ]
 )
@@ -93,14 +98,14 @@ def _program(entry, features, constants, outputs, folders, records):
     composer = _Composer(folders, features, records)
     for name, value in constants:
         composer.emit(f"#define {name} {value}", "<constants>", 1)
-    for number, line in enumerate((layout.glsl_constants() + layout.glsl_uniforms()).splitlines(), 1):
+    for number, line in enumerate((record_glsl.constants() + record_glsl.uniforms()).splitlines(), 1):
         composer.emit(line, "<layout>", number)
     composer.file(entry)
     return ProgramSource(
         name=entry,
         fragment="\n".join(composer.text) + "\n",
         textures=tuple(composer.textures),
-        uniform_struct=layout.glsl_uniform_struct(),
+        uniform_struct=record_glsl.uniform_struct(),
         outputs=outputs,
         lines=tuple(composer.lines),
     )
@@ -169,12 +174,12 @@ class _Composer:
         if key in self._included:
             return
         self._included.add(key)
-        text = layout.glsl_reader(record)
+        text = record_glsl.reader(record)
         if record.texture not in self.textures:
             self.textures.append(record.texture)
-            text = layout.glsl_fetch(record.texture) + text
-        if record is layout.IMAGE:  # an image record goes with the texels it points to
-            self.textures.append("images")
-            text = layout.glsl_fetch("images") + text
+            text = record_glsl.fetch(record.texture) + text
+        if record.points_into:
+            self.textures.append(record.points_into)
+            text = record_glsl.fetch(record.points_into) + text
         for number, line in enumerate(text.splitlines(), 1):
             self.emit(line, key, number)

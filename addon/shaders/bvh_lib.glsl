@@ -59,15 +59,22 @@ float bvh_box_hit(vec3 lower, vec3 upper, Slabs slabs, float t_max)
 }
 
 #ifdef HAS_INSTANCES
-/* The ray in object space, its direction unit again; `scale` is what a length along it is multiplied by. */
-Ray bvh_object_ray(Instance instance, Ray ray, out float scale)
+/* How much of the way to an instance's box the ray is taken there before it is seen in object space: not all of it, the box is
+ * as tight as rounding allows. */
+#define BVH_APPROACH 0.9375
+
+/* The ray from `start` on in object space, its direction unit again; `scale` is what a length along it is multiplied by. The
+ * nearer to the object it starts, the less its direction's rounding tells, and relative to the object's own origin nothing
+ * large is subtracted: a stretched sphere's outline stays as exact as a sphere's, wherever it stands. */
+Ray bvh_object_ray(Instance instance, InstanceSurface placed, Ray ray, float start, out float scale)
 {
-  vec4 origin = vec4(ray.origin, 1.0);
+  vec3 place = vec3(placed.to_world_x.w, placed.to_world_y.w, placed.to_world_z.w);
+  vec3 origin = (ray.origin - place) + start * ray.direction;
   vec3 direction = vec3(dot(instance.to_object_x.xyz, ray.direction), dot(instance.to_object_y.xyz, ray.direction),
                         dot(instance.to_object_z.xyz, ray.direction));
   scale = length(direction);
-  return ray_make(vec3(dot(instance.to_object_x, origin), dot(instance.to_object_y, origin), dot(instance.to_object_z, origin)),
-             direction / scale);
+  return ray_make(vec3(dot(instance.to_object_x.xyz, origin), dot(instance.to_object_y.xyz, origin),
+                       dot(instance.to_object_z.xyz, origin)), direction / scale, ray.kind);
 }
 #endif
 
@@ -83,6 +90,13 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
   if (frame_root_count < 0.5 || (any_hit && hit.kind >= 0)) {
     return hit;
   }
+#ifdef HAS_SHADOW_CATCHER
+#ifndef HAS_INSTANCES
+  if (world_ray.kind == RAY_SHADOW_OF_CATCHERS) { /* only instances and planes are catchers */
+    return hit;
+  }
+#endif
+#endif
   Ray ray = world_ray;
   Slabs slabs = bvh_slabs(ray);
   int stack_index[BVH_STACK_SIZE];
@@ -94,7 +108,10 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
 #ifdef HAS_INSTANCES
   int instance = -1;
   int instance_top = -1; /* where the stack stood when the instance was entered */
+  float enters = 0.0;    /* where the ray enters the box of the reference in hand */
+  float start = 0.0;     /* in world space, of the ray in object space */
   float scale = 1.0;
+  float t_outside = t_max; /* hit.t when the instance was entered */
 #endif
   bool pop = false; /* whether the next reference comes from the stack */
   bool done = false;
@@ -104,8 +121,7 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
       if (pop) {
 #ifdef HAS_INSTANCES
         if (top == instance_top) {
-          hit.t /= scale;
-          scale = 1.0;
+          hit.t = hit.instance == instance ? start + hit.t / scale : t_outside;
           ray = world_ray;
           slabs = bvh_slabs(ray);
           instance = -1;
@@ -122,6 +138,9 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
         }
         index = stack_index[top];
         leaf = stack_leaf[top];
+#ifdef HAS_INSTANCES
+        enters = stack_t[top];
+#endif
         pop = false;
       }
       if (LEAF_COUNT(leaf) > 0) {
@@ -142,18 +161,27 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
       index = first_is_near ? node.first_0 : node.first_1;
       leaf = first_is_near ? node.leaf_0 : node.leaf_1;
       pop = t_near >= BVH_MISS;
+#ifdef HAS_INSTANCES
+      enters = t_near;
+#endif
     }
     if (done) {
       break;
     }
 #ifdef HAS_INSTANCES
     if (LEAF_KIND(leaf) == KIND_INSTANCE) {
+      Instance entered = read_instance(JOIN_INDEX(index, LEAF_HIGH(leaf)));
+      if (!ray_sees(world_ray, entered.visibility)) {
+        pop = true;
+        continue;
+      }
       instance = JOIN_INDEX(index, LEAF_HIGH(leaf));
       instance_top = top;
-      Instance entered = read_instance(instance);
-      ray = bvh_object_ray(entered, world_ray, scale);
+      start = BVH_APPROACH * enters;
+      ray = bvh_object_ray(entered, read_instance_surface(instance), world_ray, start, scale);
       slabs = bvh_slabs(ray);
-      hit.t *= scale;
+      t_outside = hit.t;
+      hit.t = (hit.t - start) * scale;
       index = entered.root;
       leaf = LEAF_INNER(entered.root_high);
       continue;
@@ -172,7 +200,9 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
     pop = true;
   }
 #ifdef HAS_INSTANCES
-  hit.t /= scale; /* only when an any-hit ended inside an instance */
+  if (instance >= 0) { /* an any-hit ended inside an instance */
+    hit.t = start + hit.t / scale;
+  }
 #endif
   return hit;
 }
@@ -204,6 +234,13 @@ Surface bvh_placed_surface(Surface surface, Instance instance, InstanceSurface p
   vec3 outwards = vec3(dot(abs(placed.to_world_x), here), dot(abs(placed.to_world_y), here), dot(abs(placed.to_world_z), here));
   surface.error = stretch * (surface.error + ray_flat_error(normal, inwards)) + ray_flat_error(surface.geometric_normal, outwards);
   surface.material += instance.first_material;
+#ifdef HAS_TRIANGLE
+  surface.lift = vec3(dot(placed.to_world_x.xyz, surface.lift), dot(placed.to_world_y.xyz, surface.lift),
+                      dot(placed.to_world_z.xyz, surface.lift));
+#endif
+#ifdef HAS_ATTRIBUTES
+  surface.geometry = instance.geometry;
+#endif
   return surface;
 }
 #endif
@@ -215,21 +252,44 @@ Surface bvh_surface(Hit hit, Ray world_ray)
   Ray ray = world_ray;
 #ifdef HAS_INSTANCES
   Instance instance;
+  InstanceSurface placed;
   if (hit.instance >= 0) {
     float scale;
     instance = read_instance(hit.instance);
-    ray = bvh_object_ray(instance, world_ray, scale);
-    hit.t *= scale;
+    placed = read_instance_surface(hit.instance);
+    ray = bvh_object_ray(instance, placed, world_ray, hit.t, scale);
+    hit.t = 0.0;
   }
 #endif
   Surface surface = primitive_surface(hit, ray);
+#ifdef HAS_ATTRIBUTES
+  surface.kind = hit.kind;
+  surface.index = hit.index;
+  surface.instance = hit.instance;
+#endif
 #ifdef HAS_INSTANCES
   if (hit.instance >= 0) {
-    surface = bvh_placed_surface(surface, instance, read_instance_surface(hit.instance), abs(seen));
+    surface = bvh_placed_surface(surface, instance, placed, abs(seen));
   }
 #endif
   if (primitive_is_flat(hit.kind)) { /* along a floor that reaches far its coordinates are coarse: what was seen is finer */
     surface.position = seen + dot(surface.geometric_normal, surface.position - seen) * surface.geometric_normal;
   }
   return surface;
+}
+
+/* The visibility of what was hit, see `scene.Visibility`. */
+int bvh_visibility(Hit hit)
+{
+#ifdef HAS_PLANE
+  if (hit.kind == KIND_PLANE) {
+    return read_plane(hit.index).visibility;
+  }
+#endif
+#ifdef HAS_INSTANCES
+  if (hit.instance >= 0) {
+    return read_instance(hit.instance).visibility;
+  }
+#endif
+  return VISIBILITY_ALL;
 }

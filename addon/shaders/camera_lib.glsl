@@ -13,5 +13,5 @@ Ray camera_ray(vec2 pixel, out float t_max)
   vec3 direction = to_window / per_depth;
   t_max = (frame_clip_end - frame_clip_start) * per_depth;
   vec3 origin = parallel ? frame_camera_origin + offset : frame_camera_origin;
-  return ray_make(origin + (frame_clip_start * per_depth) * direction, direction);
+  return ray_make(origin + (frame_clip_start * per_depth) * direction, direction, RAY_CAMERA);
 }

@@ -31,7 +31,11 @@ Surface cone_surface(Cone cone, ConeSurface info, Ray ray, float t)
   vec2 flat_uv = vec2(dot(across, info.meridian), dot(across, other)) / (2.0 * max(base_radius, apex_radius)) + 0.5;
   vec2 round_uv = vec2(quadric_u(dot(radial, info.meridian), dot(radial, other)), z / height);
   vec2 uv = info.planar > 0.5 ? flat_uv : round_uv;
-  return ray_make_surface(cone.base + z * axis + (base_radius + slope * z) * radial, normal, normal,
+  Surface surface = ray_make_surface(cone.base + z * axis + (base_radius + slope * z) * radial, normal, normal,
                  uv * info.uv_transform.xy + info.uv_transform.zw, info.material,
                  ray_error(cone.base, height + max(base_radius, apex_radius)));
+#ifdef HAS_ATTRIBUTES
+  surface.weights.x = z / height; /* of the apex */
+#endif
+  return surface;
 }

@@ -20,7 +20,11 @@ Surface cylinder_surface(Cylinder cylinder, CylinderSurface info, Ray ray, float
   float z = clamp(dot(offset, axis), 0.0, height);
   vec3 normal = normalize(offset - dot(offset, axis) * axis);
   vec2 uv = vec2(quadric_u(dot(normal, info.meridian), dot(normal, cross(axis, info.meridian))), z / height);
-  return ray_make_surface(cylinder.base + z * axis + radius * normal, normal, normal,
+  Surface surface = ray_make_surface(cylinder.base + z * axis + radius * normal, normal, normal,
                  uv * info.uv_transform.xy + info.uv_transform.zw, info.material,
                  ray_error(cylinder.base, height + radius));
+#ifdef HAS_ATTRIBUTES
+  surface.weights.x = z / height; /* of the apex */
+#endif
+  return surface;
 }

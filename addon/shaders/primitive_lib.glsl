@@ -19,9 +19,6 @@
 #include "plane_lib.glsl"
 #endif
 
-/* A plane stands in no tree; it only needs a number of its own. */
-#define KIND_PLANE 7
-
 struct Hit {
   float t;
   int kind; /* -1: nothing hit */
@@ -74,7 +71,12 @@ void primitive_leaf_hit(int kind, int first, int count, Ray ray, inout Hit hit)
 void primitive_planes_hit(int count, Ray ray, inout Hit hit)
 {
 #ifdef HAS_PLANE
-  for (int i = 0; i < count; i++) PRIMITIVE_TEST(KIND_PLANE, read_plane, plane_hit, i)
+  for (int i = 0; i < count; i++) {
+    if (!ray_sees(ray, read_plane(i).visibility)) {
+      continue;
+    }
+    PRIMITIVE_TEST(KIND_PLANE, read_plane, plane_hit, i)
+  }
 #endif
 }
 

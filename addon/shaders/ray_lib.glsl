@@ -1,8 +1,22 @@
 /* Rays and the numbers that keep them off the surface they start from. */
 
+/* What a ray is, as the bits of `scene.Visibility` that an object must have for the ray to see it. Rays that pass straight
+ * through a surface stay what they are. */
+#define RAY_CAMERA 1
+#define RAY_GLOSSY 4
+#define RAY_TRANSMISSION 8
+#define RAY_SHADOW 16
+#define RAY_SHADOW_OF_CATCHERS 80 /* a shadow ray that only shadow catchers stop */
+
+/* The bits that say how camera rays see an object. */
+#define VISIBILITY_ALL 31
+#define VISIBILITY_HOLDOUT 32
+#define VISIBILITY_SHADOW_CATCHER 64
+
 struct Ray {
   vec3 origin;
   vec3 direction; /* unit */
+  int kind;
 };
 
 /* What a hit needs to be shaded: everything in the space of the ray. */
@@ -13,14 +27,25 @@ struct Surface {
   vec2 uv;
   int material;
   float error; /* bound of the rounding error of position across the surface, an absolute length */
+#ifdef HAS_TRIANGLE
+  vec3 lift; /* from position to the smooth surface that the vertex normals tell, on the side that the ray comes from */
+#endif
+#ifdef HAS_ATTRIBUTES
+  vec2 weights; /* of the second and the third value of the primitive's attributes */
+  int kind;
+  int index; /* of the primitive among those of its kind */
+  int geometry;
+  int instance; /* -1: in world space */
+#endif
 };
 
-/* Structs are made by functions: Metal's language knows no constructors of the kind `ray_make(origin, direction)`. */
-Ray ray_make(vec3 origin, vec3 direction)
+/* Structs are made by functions: Metal's language knows no constructors of the kind `Ray(origin, direction, kind)`. */
+Ray ray_make(vec3 origin, vec3 direction, int kind)
 {
   Ray ray;
   ray.origin = origin;
   ray.direction = direction;
+  ray.kind = kind;
   return ray;
 }
 
@@ -33,6 +58,16 @@ Surface ray_make_surface(vec3 position, vec3 geometric_normal, vec3 shading_norm
   surface.uv = uv;
   surface.material = material;
   surface.error = error;
+#ifdef HAS_TRIANGLE
+  surface.lift = vec3(0.0);
+#endif
+#ifdef HAS_ATTRIBUTES
+  surface.weights = vec2(0.0);
+  surface.kind = -1;
+  surface.index = 0;
+  surface.geometry = 0;
+  surface.instance = -1;
+#endif
   return surface;
 }
 
@@ -51,6 +86,20 @@ float ray_error(vec3 position, float extent)
 float ray_flat_error(vec3 normal, vec3 size)
 {
   return RAY_RELATIVE_ERROR * dot(abs(normal), abs(size));
+}
+
+/* Whether an object of this visibility is there for a ray. */
+bool ray_sees(Ray ray, int visibility)
+{
+#ifdef HAS_VISIBILITY
+  return (visibility & ray.kind) == ray.kind;
+#else
+#ifdef HAS_SHADOW_CATCHER
+  return (visibility & ray.kind) == ray.kind;
+#else
+  return true;
+#endif
+#endif
 }
 
 /* Origin of a ray that leaves a surface towards `direction`: moved off along the normal, by no more than rounding asks for

@@ -6,17 +6,26 @@
 #include "optics_lib.glsl"
 #include "light_lib.glsl"
 
-/* A ray of the path and what it stands for. */
+#ifdef TINTED_SHADOWS
+#define SHADING_SHADOWS_PASS true
+#else
+#ifdef CULLED_SHADOWS
+#define SHADING_SHADOWS_PASS true
+#else
+#define SHADING_SHADOWS_PASS false /* the first thing in the way ends a shadow ray */
+#endif
+#endif
+
+/* A ray of the path and what it stands for. A camera ray has met nothing but surfaces that do not bend it. */
 struct Path {
   Ray ray;
   float t_max;
   vec3 weight; /* its share of the pixel */
   int depth;   /* the eye ray is 1 */
   ivec4 media; /* the bodies it is inside of */
-  bool direct; /* straight from the eye, through nothing but surfaces that do not bend it */
 };
 
-Path shading_path(Ray ray, float t_max, vec3 weight, int depth, ivec4 media, bool direct)
+Path shading_path(Ray ray, float t_max, vec3 weight, int depth, ivec4 media)
 {
   Path path;
   path.ray = ray;
@@ -24,7 +33,6 @@ Path shading_path(Ray ray, float t_max, vec3 weight, int depth, ivec4 media, boo
   path.weight = weight;
   path.depth = depth;
   path.media = media;
-  path.direct = direct;
   return path;
 }
 
@@ -37,6 +45,7 @@ struct Lit {
   vec3 highlight;
   float shine;
   ivec4 media; /* around the lit side */
+  int shadow;  /* kind of the shadow rays */
 };
 
 /* A ray towards a light. */
@@ -55,7 +64,15 @@ struct Scattered {
   Path reflected;
   bool refracts;
   Path refracted;
+#ifdef HAS_SHADOW_CATCHER
+  bool catches; /* nothing goes on: the sky is seen, as dark as the shadows of others make the surface */
+#endif
 };
+
+float shading_mean(vec3 color)
+{
+  return (color.r + color.g + color.b) / 3.0;
+}
 
 /* Nothing goes on; `path` stands for rays that are not there. */
 Scattered shading_nothing(Path path)
@@ -65,6 +82,9 @@ Scattered shading_nothing(Path path)
   scattered.reflected = path;
   scattered.refracts = false;
   scattered.refracted = path;
+#ifdef HAS_SHADOW_CATCHER
+  scattered.catches = false;
+#endif
   return scattered;
 }
 
@@ -79,13 +99,28 @@ vec3 shading_lit_by(Lit lit, vec3 radiance, vec3 direction, float cosine)
   return radiance * share;
 }
 
+/* Where a shadow ray starts. A light that stands behind the flat triangle but before the smooth surface it stands for is
+ * looked at from the latter: the triangle itself would be in the way. */
+vec3 shading_shadow_origin(Lit lit, vec3 direction)
+{
+  vec3 origin = ray_spawn(lit.surface, direction);
+#ifdef HAS_TRIANGLE
+  vec3 normal = lit.surface.geometric_normal;
+  float side = dot(lit.normal, normal);
+  if (side * dot(direction, normal) < 0.0 && side * dot(lit.surface.lift, normal) > 0.0) {
+    origin += lit.surface.lift;
+  }
+#endif
+  return origin;
+}
+
 /* The shadow ray of the next light from `index` on that faces the surface and casts shadows; `index` becomes the number of
  * lights when there is none. Lights without shadows are added to `radiance` at once. */
 Shadow shading_next_shadow(inout int index, Lit lit, inout vec3 radiance)
 {
   int count = int(frame_light_count);
   Shadow shadow;
-  shadow.ray = ray_make(vec3(0.0), vec3(0.0, 0.0, 1.0));
+  shadow.ray = ray_make(vec3(0.0), vec3(0.0, 0.0, 1.0), lit.shadow);
   shadow.t_max = 0.0;
   shadow.contribution = vec3(0.0);
   shadow.tint = vec3(0.0);
@@ -105,7 +140,7 @@ Shadow shading_next_shadow(inout int index, Lit lit, inout vec3 radiance)
       radiance += contribution;
       continue;
     }
-    Ray ray = ray_make(ray_spawn(lit.surface, direction), direction);
+    Ray ray = ray_make(shading_shadow_origin(lit, direction), direction, lit.shadow);
     if (light.kind != LIGHT_SUN) { /* from where the ray starts, not from the surface */
       vec3 to_light = light.position - ray.origin;
       t_max = length(to_light);
@@ -130,17 +165,26 @@ vec3 shading_arrived(Shadow shadow)
   return light;
 }
 
-/* Take a shadow ray through the surface that it has hit; false when what is left is not worth following. */
+/* Take a shadow ray through the surface that it has hit; false when it ends there or what is left is not worth following. */
 bool shading_pass(inout Shadow shadow, Hit hit)
 {
   Surface surface = bvh_surface(hit, shadow.ray);
-  Material material = material_at(surface.material, surface.uv);
+  Material material = material_at(surface);
   bool leaves = dot(shadow.ray.direction, surface.geometric_normal) > 0.0;
-  shadow.tint *= material.transmit;
+  bool culled = false;
+#ifdef CULLED_SHADOWS
+  culled = !leaves && material.cull_back_shadow > 0.5; /* as the light sees it, which looks the other way */
+#endif
+#ifdef TINTED_SHADOWS
+  vec3 transmit = material.transmit;
+#else
+  vec3 transmit = vec3(0.0);
+#endif
+  shadow.tint *= culled ? vec3(1.0) : transmit;
 #ifdef HAS_ABSORPTION
-  bool inside = leaves && material.bounds_body > 0.5;
-  shadow.tint *= optics_absorb(inside ? material.absorption : medium_absorption(shadow.media), hit.t);
-  if (material.bounds_body > 0.5) {
+  bool borders = material.bounds_body > 0.5 && !culled;
+  shadow.tint *= optics_absorb(borders && leaves ? material.absorption : medium_absorption(shadow.media), hit.t);
+  if (borders) {
     shadow.media = leaves ? medium_leave(shadow.media, surface.material) : medium_enter(shadow.media, surface.material);
   }
 #endif
@@ -148,6 +192,16 @@ bool shading_pass(inout Shadow shadow, Hit hit)
   shadow.t_max -= hit.t;
   shadow.surfaces++;
   return optics_largest(shadow.tint) > frame_weight_cutoff && shadow.surfaces <= TINTED_SHADOW_SURFACES;
+}
+
+/* What a shadow catcher leaves of the sky behind it: the light on it over the light there would be if nothing but catchers
+ * cast shadows, whose own are in the footage already; the mean of the channels, 1 in those without light. It hides what
+ * else is behind it, as the ground in the footage does. (As Cycles.) */
+float shading_caught(vec3 lit, vec3 unshadowed)
+{
+  vec3 ratio = vec3(unshadowed.r > 0.0 ? lit.r / unshadowed.r : 1.0, unshadowed.g > 0.0 ? lit.g / unshadowed.g : 1.0,
+                    unshadowed.b > 0.0 ? lit.b / unshadowed.b : 1.0);
+  return min(shading_mean(ratio), 1.0);
 }
 
 /* The reflected ray. An interpolated normal may bend it into the surface: then it grazes. */
@@ -158,41 +212,58 @@ Ray shading_reflected(Surface surface, vec3 direction, vec3 normal, vec3 face)
   if (outside <= 0.0) {
     mirrored = normalize(mirrored + (1e-3 - outside) * face);
   }
-  return ray_make(ray_spawn(surface, mirrored), mirrored);
+  return ray_make(ray_spawn(surface, mirrored), mirrored, RAY_GLOSSY);
 }
 
 /* The refracted ray, likewise kept beyond the surface. */
-Ray shading_refracted(Surface surface, vec3 bent, vec3 face)
+Ray shading_refracted(Surface surface, vec3 bent, vec3 face, int kind)
 {
   float outside = dot(bent, face);
   if (outside >= 0.0) {
     bent = normalize(bent - (1e-3 + outside) * face);
   }
-  return ray_make(ray_spawn(surface, bent), bent);
+  return ray_make(ray_spawn(surface, bent), bent, kind);
 }
 
-/* Where a path meets a surface: what it gives off towards the eye is added to `radiance`, `lit` is what the lights are to
- * light, and the result what goes on. */
-Scattered shading_scatter(Path path, Hit hit, inout vec3 radiance, out Lit lit)
+/* The path on the other side of a surface that is not there for it. */
+Path shading_beyond(Path path, Surface surface, float t)
+{
+  path.ray.origin = ray_spawn(surface, path.ray.direction);
+  path.t_max -= t;
+  return path;
+}
+
+/* Where a path meets a surface: what it gives off towards the eye is added to `radiance`, what is cut out of the picture taken
+ * off `alpha`, `lit` is what the lights are to light, and the result what goes on. */
+Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout float alpha, out Lit lit)
 {
   vec3 incoming = path.ray.direction;
   Surface surface = bvh_surface(hit, path.ray);
-  Material material = material_at(surface.material, surface.uv);
+  Material material = material_at(surface);
   bool entering = dot(incoming, surface.geometric_normal) < 0.0;
   vec3 normal = entering ? surface.shading_normal : -surface.shading_normal;
   vec3 face = entering ? surface.geometric_normal : -surface.geometric_normal;
   if (dot(normal, incoming) >= 0.0) { /* an interpolated normal that looks away: the surface's own is the truth */
     normal = face;
   }
+  bool culled = false;
+#ifdef HAS_CULLING
+  culled = !entering && material.cull_back > 0.5;
+#endif
   bool transmits = optics_largest(material.transmit) > 0.0;
-  bool borders = transmits && material.bounds_body > 0.5; /* on a medium; the back of an opaque surface bounds no body */
-
-  vec3 weight = path.weight;
+  bool borders = transmits && material.bounds_body > 0.5 && !culled; /* on a medium; no opaque surface's back bounds a body */
 #ifdef HAS_ABSORPTION
   /* A ray that leaves a body has been inside it, even if it was not seen entering: the eye was inside. */
-  weight *= optics_absorb(borders && !entering ? material.absorption : medium_absorption(path.media), hit.t);
+  path.weight *= optics_absorb(borders && !entering ? material.absorption : medium_absorption(path.media), hit.t);
 #endif
-  radiance += weight * material.glow;
+  Scattered scattered = shading_nothing(path);
+#ifdef HAS_CULLING
+  if (culled) {
+    material_hide(material);
+    scattered.refracts = true;
+    scattered.refracted = shading_beyond(path, surface, hit.t);
+  }
+#endif
 
   ivec4 beyond = path.media;
   if (borders) {
@@ -202,6 +273,22 @@ Scattered shading_scatter(Path path, Hit hit, inout vec3 radiance, out Lit lit)
   if (transmits) {
     eta = entering ? medium_ior(path.media) / material.ior : material.ior / medium_ior(beyond);
   }
+#ifdef HAS_HOLDOUT
+  if (path.ray.kind == RAY_CAMERA && !culled && (bvh_visibility(hit) & VISIBILITY_HOLDOUT) != 0) {
+    material_hide(material);
+    material.transmit *= eta == 1.0 ? 1.0 : 0.0;
+    alpha -= shading_mean(path.weight * (1.0 - material.transmit));
+  }
+#endif
+#ifdef HAS_SHADOW_CATCHER
+  int visibility = bvh_visibility(hit) & (VISIBILITY_SHADOW_CATCHER + VISIBILITY_HOLDOUT);
+  scattered.catches = path.ray.kind == RAY_CAMERA && !culled && visibility == VISIBILITY_SHADOW_CATCHER;
+  if (scattered.catches) {
+    material.glow = vec3(0.0);
+  }
+#endif
+  radiance += path.weight * material.glow;
+
   float cos_i = min(-dot(normal, incoming), 1.0);
   float cos_t;
   float fresnel = optics_fresnel(cos_i, eta, cos_t);
@@ -220,25 +307,34 @@ Scattered shading_scatter(Path path, Hit hit, inout vec3 radiance, out Lit lit)
   lit.surface = surface;
   lit.normal = normal;
   lit.view = incoming;
-  lit.diffuse = weight * diffuse;
-  lit.highlight = weight * material.highlight;
+  lit.diffuse = path.weight * diffuse;
+  lit.highlight = path.weight * material.highlight;
   lit.shine = material.shine;
   lit.media = path.media;
+  lit.shadow = RAY_SHADOW;
 
-  Scattered scattered = shading_nothing(path);
-  mirror *= weight;
-  through *= weight;
-  if (path.depth < int(frame_max_depth)) {
+  bool goes_on = path.depth < int(frame_max_depth) && !culled;
+#ifdef HAS_SHADOW_CATCHER
+  if (scattered.catches) {
+    goes_on = false;
+    lit.diffuse = diffuse; /* whatever the path weighs, it is a ratio that is asked for */
+    lit.highlight = material.highlight;
+  }
+#endif
+  mirror *= path.weight;
+  through *= path.weight;
+  if (goes_on) {
     scattered.reflects = optics_largest(mirror) > frame_weight_cutoff;
     scattered.refracts = optics_largest(through) > frame_weight_cutoff;
   }
   if (scattered.reflects) {
     Ray ray = shading_reflected(surface, incoming, normal, face);
-    scattered.reflected = shading_path(ray, 1e30, mirror, path.depth + 1, path.media, false);
+    scattered.reflected = shading_path(ray, 1e30, mirror, path.depth + 1, path.media);
   }
-  if (scattered.refracts) {
-    Ray ray = shading_refracted(surface, optics_refract(incoming, normal, cos_i, cos_t, eta), face);
-    scattered.refracted = shading_path(ray, 1e30, through, path.depth + 1, beyond, path.direct && eta == 1.0);
+  if (scattered.refracts && !culled) {
+    int kind = eta == 1.0 ? path.ray.kind : RAY_TRANSMISSION;
+    Ray ray = shading_refracted(surface, optics_refract(incoming, normal, cos_i, cos_t, eta), face, kind);
+    scattered.refracted = shading_path(ray, 1e30, through, path.depth + 1, beyond);
   }
   return scattered;
 }

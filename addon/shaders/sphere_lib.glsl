@@ -25,6 +25,8 @@ float sphere_hit(Sphere sphere, Ray ray, float t_max)
   return (t > 0.0 && t < t_max) ? t : t_max;
 }
 
+#define SPHERE_FIXED_UV 2.0 /* `rotation.z` is larger where the other two are the uv of the whole sphere */
+
 /* Rotate by modified Rodrigues parameters p = axis tan(angle / 4) (Shuster 1993, A survey of attitude representations). */
 vec3 sphere_rotate(vec3 p, vec3 v)
 {
@@ -40,6 +42,6 @@ Surface sphere_surface(Sphere sphere, SphereSurface info, Ray ray, float t)
   vec3 local = sphere_rotate(-info.rotation, normal);
   /* atan keeps the digits near the poles that acos, (31), loses. */
   float v = 1.0 - atan(length(local.xy), local.z) * (2.0 / TWO_PI);
-  return ray_make_surface(sphere.center + radius * normal, normal, normal, vec2(quadric_u(local.x, local.y), v), info.material,
-                 ray_error(sphere.center, radius));
+  vec2 uv = info.rotation.z > SPHERE_FIXED_UV ? info.rotation.xy : vec2(quadric_u(local.x, local.y), v);
+  return ray_make_surface(sphere.center + radius * normal, normal, normal, uv, info.material, ray_error(sphere.center, radius));
 }

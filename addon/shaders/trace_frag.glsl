@@ -17,7 +17,7 @@ void main()
 {
   float t_max;
   Ray eye = camera_ray(gl_FragCoord.xy, t_max);
-  Path path = shading_path(eye, t_max, vec3(1.0), 1, medium_outside(), true);
+  Path path = shading_path(eye, t_max, vec3(1.0), 1, medium_outside());
   Path stack[PATH_STACK_SIZE];
   int stacked = 0;
   Scattered scattered = shading_nothing(path); /* what goes on when the lights are done */
@@ -27,6 +27,10 @@ void main()
 
   vec3 radiance = vec3(0.0);
   float alpha = 1.0;
+#ifdef HAS_SHADOW_CATCHER
+  vec3 radiance_before = vec3(0.0);
+  vec3 caught = vec3(0.0);
+#endif
 #ifdef COUNT_RAYS
   float eye_hits = 0.0, reflected = 0.0, refracted = 0.0, shadows = 0.0, dropped = 0.0;
 #endif
@@ -42,45 +46,46 @@ void main()
       ray = shadow.ray;
       limit = shadow.t_max;
     }
-#ifdef TINTED_SHADOWS
-    Hit hit = bvh_traverse(ray, limit, false);
-#else
-    Hit hit = bvh_traverse(ray, limit, is_shadow);
-#endif
+    Hit hit = bvh_traverse(ray, limit, is_shadow && !SHADING_SHADOWS_PASS);
     bool missed = hit.kind < 0;
-    bool path_ends = false;
+    bool sees_sky = missed && !is_shadow;
+    bool path_ends = sees_sky;
 
     if (is_shadow) {
       if (missed) {
         radiance += shading_arrived(shadow);
       }
-#ifdef TINTED_SHADOWS
-      else if (shading_pass(shadow, hit)) {
+      else if (SHADING_SHADOWS_PASS && shading_pass(shadow, hit)) {
         continue;
       }
-#endif
       light++;
     }
-    else if (missed) {
-      if (frame_film_transparent > 0.5 && path.direct) {
-        alpha -= (path.weight.r + path.weight.g + path.weight.b) / 3.0;
-      }
-      else {
-        radiance += path.weight * world_radiance(ray.direction);
-      }
-      path_ends = true;
-    }
-    else {
+    else if (!missed) {
 #ifdef COUNT_RAYS
       eye_hits += path.depth == 1 ? 1.0 : 0.0;
 #endif
-      scattered = shading_scatter(path, hit, radiance, lit);
+      scattered = shading_scatter(path, hit, radiance, alpha, lit);
+#ifdef HAS_SHADOW_CATCHER
+      if (scattered.catches) { /* meanwhile `radiance` is the light on the catcher */
+        radiance_before = radiance;
+        radiance = vec3(0.0);
+      }
+#endif
       bool shaded = optics_largest(lit.diffuse) > 0.0 || optics_largest(lit.highlight) > 0.0;
       light = shaded ? 0 : int(frame_light_count);
     }
 
     if (light >= 0) {
       shadow = shading_next_shadow(light, lit, radiance);
+#ifdef HAS_SHADOW_CATCHER
+      if (scattered.catches && light == int(frame_light_count) && lit.shadow == RAY_SHADOW) {
+        caught = radiance; /* now the same lights with the shadows of catchers alone */
+        radiance = vec3(0.0);
+        lit.shadow = RAY_SHADOW_OF_CATCHERS;
+        light = 0;
+        shadow = shading_next_shadow(light, lit, radiance);
+      }
+#endif
       if (light < int(frame_light_count)) {
         TRACE_COUNT(shadows);
         continue;
@@ -103,6 +108,21 @@ void main()
         path = scattered.reflected;
       }
       path_ends = !scattered.reflects && !scattered.refracts;
+#ifdef HAS_SHADOW_CATCHER
+      if (scattered.catches) {
+        path.weight *= shading_caught(caught, radiance);
+        radiance = radiance_before;
+        sees_sky = true;
+      }
+#endif
+    }
+    if (sees_sky) {
+      if (frame_film_transparent > 0.5 && path.ray.kind == RAY_CAMERA) {
+        alpha -= shading_mean(path.weight);
+      }
+      else {
+        radiance += path.weight * world_radiance(path.ray.direction);
+      }
     }
     if (path_ends) {
       if (stacked == 0) {

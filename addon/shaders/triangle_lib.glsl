@@ -71,6 +71,18 @@ float triangle_hit(Triangle triangle, Ray ray, float t_max)
   return (t > 0.0 && t < t_max) ? t : t_max;
 }
 
+/* From a point of the triangle to the smooth surface: the mean of where the planes across the vertex normals lie over the
+ * point, 0 where they lie under it. `facing` < 0: over is where the normals point to, else the other side. (Hanika 2021,
+ * Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4.) */
+vec3 triangle_lift(Triangle triangle, TriangleSurface info, vec3 weights, vec3 position, float facing)
+{
+  float side = facing < 0.0 ? 1.0 : -1.0;
+  float h0 = side * min(side * dot(position - triangle.p0, info.n0), 0.0);
+  float h1 = side * min(side * dot(position - triangle.p1, info.n1), 0.0);
+  float h2 = side * min(side * dot(position - triangle.p2, info.n2), 0.0);
+  return -(weights.x * h0) * info.n0 - (weights.y * h1) * info.n1 - (weights.z * h2) * info.n2;
+}
+
 Surface triangle_surface(Triangle triangle, TriangleSurface info, Ray ray, float t)
 {
   vec3 along;
@@ -91,6 +103,12 @@ Surface triangle_surface(Triangle triangle, TriangleSurface info, Ray ray, float
   }
   vec2 uv = weights.x * vec2(info.u0, info.v0) + weights.y * info.uv1 + weights.z * info.uv2;
   vec3 extent = max(abs(triangle.p0), max(abs(triangle.p1), abs(triangle.p2)));
-  return ray_make_surface(position, normal, shading_normal, uv, info.material,
+  Surface surface = ray_make_surface(position, normal, shading_normal, uv, info.material,
                  min(ray_flat_error(triangle_spread(e1, e2) / area, extent), ray_error(extent, 0.0)));
+  float facing = dot(shading_normal, smooth_normal) * dot(normal, ray.direction);
+  surface.lift = triangle_lift(triangle, info, weights, position, facing);
+#ifdef HAS_ATTRIBUTES
+  surface.weights = weights.yz;
+#endif
+  return surface;
 }

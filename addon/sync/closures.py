@@ -2,6 +2,7 @@
 """The shader nodes that are understood, each as `Lobes`."""
 
 from .lobes import Lobes, dielectric_coat, ior_of_reflectance, metal, normal_reflectance, sharpness
+from .textures import listed
 from .values import Value
 
 GREY = Value((0.8, 0.8, 0.8))
@@ -44,7 +45,7 @@ def _report_ignored(source, reader):
         if socket is not None and socket.enabled and (socket.is_linked or _is_set(socket)):
             used.append(socket.name)
     if used:
-        reader.warn(f"node {source.node.name!r}: {', '.join(used)} {'is' if len(used) == 1 else 'are'} not rendered")
+        reader.warn(f"node {source.node.name!r}: {listed(used, 'is', 'are')} not rendered")
 
 
 def _is_set(socket):

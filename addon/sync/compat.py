@@ -36,3 +36,8 @@ def light_factor(light):
 def _area(light):
     """The area by which `normalize` divides; a sun without an angle has none and counts as 1."""
     return light.area() if light.type != "SUN" or light.angle > 0.0 else 1.0
+
+
+def has_geometry_sets():
+    """Whether the evaluated geometry of an object, instances and all, can be read as a whole (from 4.5 on)."""
+    return hasattr(bpy.types.Object, "evaluated_geometry")

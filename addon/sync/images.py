@@ -54,7 +54,7 @@ class Images:
             )
         )
         mean = pixels.mean(axis=1)[:, :3].mean(axis=0, dtype=np.float64)
-        return Value((1.0, 1.0, 1.0), index, tuple(np.nan_to_num(mean)))
+        return Value((1.0, 1.0, 1.0), index, mean=tuple(np.nan_to_num(mean)))
 
     def _read(self, image, user, keep_straight):
         """Pixels (h, w, 4) float32 of a Blender image, or None, reported, where there are none."""

@@ -11,6 +11,12 @@ from .textures import NodeReader
 
 #: Straight ahead, a small area light shines like a point light of four times its power: P / pi against P / 4 pi.
 _AREA_AHEAD = 4.0
+#: A light that seems smaller than this from the camera, in radians, casts shadows about as sharp as a point's.
+_SHARP = 0.05
+_AS_POINT = {
+    "AREA": "an area light is rendered as a point at its center, bright all around",
+    "SPOT": "a spot is rendered as a point light, bright all around",
+}
 
 
 class Lights:
@@ -18,7 +24,8 @@ class Lights:
 
     def __init__(self, scene, reports):
         self._scene, self._reports = scene, reports
-        self._soft = []
+        self._soft = {}
+        self._as_point = {}
 
     def add(self, obj, matrix):
         """Add the light of a Blender object that stands in the world by `matrix` (4, 4)."""
@@ -34,20 +41,21 @@ class Lights:
                 self._reports.warn(f"light {obj.name!r} is scaled to zero and gives no light")
                 return
             self._scene.add_light(Light.sun(towards, light.energy, color, shadow=light.use_shadow))
-            self._note_soft(obj.name, light.angle)
+            self._note_soft(obj, light.angle)
             return
-        self._report_kind(light, obj.name)
         watts = light.energy * (_AREA_AHEAD if light.type == "AREA" else 1.0)
         self._scene.add_light(Light.point(position, watts, color, shadow=light.use_shadow))
+        if light.type in _AS_POINT:
+            self._as_point.setdefault(light.type, {})[obj.name] = None
         if light.type != "AREA":
-            self._note_soft(obj.name, light.shadow_soft_size)
+            self._note_soft(obj, self._seen_angle(position, 2.0 * light.shadow_soft_size))
 
     def finish(self):
-        """Report, in one message, the lights whose soft shadows are not drawn."""
+        """Report the lights that are not rendered as they are: a message for each thing that is not."""
+        for kind, names in self._as_point.items():
+            self._reports.warn(f"light {_first_of(names)}: {_AS_POINT[kind]}")
         if self._soft:
-            others = len(self._soft) - 1
-            whose = f" and {others} more: their" if others else ": its"
-            self._reports.info(f"light {self._soft[0]!r}{whose} size is not rendered, shadows are sharp")
+            self._reports.info(f"light {_first_of(self._soft)}: the size of a light is not rendered, shadows are sharp")
 
     def _strength(self, light):
         """What the light's nodes multiply its energy by: colour times strength of an Emission."""
@@ -56,17 +64,24 @@ class Lights:
         if surface is None or surface.node is None:
             return (1.0, 1.0, 1.0) if tree is None else (0.0, 0.0, 0.0)
         reader = NodeReader(f"light {light.name!r}", None, self._reports)
-        if surface.type not in ("EMISSION", "ADD_SHADER", "MIX_SHADER"):
+        strength = (1.0, 1.0, 1.0)
+        if surface.type in ("EMISSION", "ADD_SHADER", "MIX_SHADER"):
+            strength = read_closure(surface, reader).glow.average
+        else:
             reader.not_understood(surface, "the light's own color")
-            return (1.0, 1.0, 1.0)
-        return read_closure(surface, reader).glow.average
+        reader.finish()
+        return strength
 
-    def _report_kind(self, light, name):
-        if light.type == "AREA":
-            self._reports.warn(f"light {name!r}: an area light is rendered as a point at its center, bright all around")
-        elif light.type == "SPOT":
-            self._reports.warn(f"light {name!r}: a spot is rendered as a point light, bright all around")
+    def _seen_angle(self, position, size):
+        """The angle under which the camera sees something of `size`."""
+        distance = np.linalg.norm(np.subtract(position, self._scene.camera.matrix[:3, 3]))
+        return 2.0 * float(np.arctan2(size / 2.0, distance))
 
-    def _note_soft(self, name, size):
-        if size > 0.0 and name not in self._soft:
-            self._soft.append(name)
+    def _note_soft(self, obj, angle):
+        if angle > _SHARP and obj.data.use_shadow and obj.data.energy > 0.0:
+            self._soft[obj.name] = None
+
+
+def _first_of(names):
+    others = len(names) - 1
+    return repr(next(iter(names))) + (f" and {others} more" if others else "")

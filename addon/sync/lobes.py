@@ -68,7 +68,7 @@ class Lobes:
 
     @property
     def blurred(self):
-        """Whether some share holds less of its images than the node tree has."""
+        """Whether some share holds less of what varies in it than the node tree has."""
         return any(getattr(self, f.name).blurred for f in fields(self) if f.name not in _NUMBERS)
 
     def material(self, absorption=(0.0, 0.0, 0.0)):
@@ -85,7 +85,7 @@ class Lobes:
             transmit = self.clear.plus(self.glass.times(1.0 - f0))
             ior = self.clear_ior if self.clear.weight >= self.glass.weight else self.ior
         return Material(
-            **_images(diffuse=diffuse, glow=self.glow, reflect=_at_most_one(reflect), transmit=_at_most_one(transmit)),
+            **_colors(diffuse=diffuse, glow=self.glow, reflect=_at_most_one(reflect), transmit=_at_most_one(transmit)),
             highlight=_rgb(self.highlight.average),
             shine=self.shine,
             ior=ior,
@@ -103,10 +103,11 @@ def _of_stronger(a, b, name, *shares):
     return getattr(a if weights[0] >= weights[1] else b, name)
 
 
-def _images(**values):
-    """Arguments of Material: each colour and the number of its image."""
+def _colors(**values):
+    """Arguments of Material: each colour, the number of its image and its attribute."""
     colors = {name: _rgb(value.rgb) for name, value in values.items()}
-    return colors | {f"{name}_image": value.image for name, value in values.items()}
+    colors |= {f"{name}_image": value.image for name, value in values.items()}
+    return colors | {f"{name}_attribute": value.attribute for name, value in values.items()}
 
 
 def _rgb(color):

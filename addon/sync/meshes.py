@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..engine.scene import Triangles
+from .attributes import of_triangles
 from .recognise import MeshArrays
 
 
@@ -83,13 +84,15 @@ class MeshTriangles:
     dropped: int = 0
 
 
-def read_triangles(mesh, slot_count, uv_sources=()):
+def read_triangles(mesh, slot_count, uv_sources=(), keys=(), wanted=None):
     """The `MeshTriangles` of an evaluated Blender mesh.
 
     Their material is the slot, as Blender clamps it to `slot_count`. `uv_sources`: a `UvSource` or None for each
-    slot; empty for no uv at all.
+    slot; empty for no uv at all. `keys`: of the attributes to read. `wanted` (faces,) bool: the faces; None for all.
     """
     corners, faces = _triangulation(mesh)
+    if wanted is not None:
+        corners, faces = corners[wanted[faces]], faces[wanted[faces]]
     if not len(corners):
         return MeshTriangles(None)
     vertices = _corner_vertex(mesh)[corners]
@@ -107,7 +110,8 @@ def read_triangles(mesh, slot_count, uv_sources=()):
     slots = _attribute(mesh, "material_index", "FACE", "value", np.int32)
     material = np.clip(slots[faces], 0, slot_count - 1) if slots is not None else np.zeros(len(faces), np.int32)
     columns |= _uvs(mesh, corners, material, uv_sources)
-    return MeshTriangles(Triangles(material=material, **columns), dropped)
+    attributes = of_triangles(mesh, keys, corners, faces)
+    return MeshTriangles(Triangles(material=material, attributes=attributes, **columns), dropped)
 
 
 def _triangulation(mesh):

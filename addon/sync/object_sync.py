@@ -1,200 +1,154 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The objects of a depsgraph in two phases: collect all copies by what they are copies of, then place them."""
+"""The objects of a depsgraph in two phases: read what its copies are drawn as, then place them."""
 
+from collections import Counter
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..engine.scene import Geometry, Instance, Spheres
-from .keys import data_key, original_key
-from .meshes import is_closed_mesh, read_triangles
-from .objects import Recognitions, taken_as
-from .placement import place_shape, placeable
-from .shapes import Shape, is_closed_shape
-
-#: Types whose evaluated geometry comes along as meshes of their own, that show nothing, or that Blender draws itself.
-_SILENT = {
-    *("CURVE", "FONT", "META", "SURFACE"),
-    *("EMPTY", "CAMERA", "ARMATURE", "LATTICE", "LIGHT_PROBE", "SPEAKER"),
-    *("GPENCIL", "GREASEPENCIL"),
-}
-#: What else an object can be, as a report calls it.
-_NOT_RENDERED = {"CURVES": "hair curves", "VOLUME": "a volume"}
-_VISIBLE_TO = tuple(f"visible_{ray}" for ray in ("camera", "diffuse", "glossy", "transmission", "shadow"))
+from .attributes import parts_of
+from .compat import has_geometry_sets
+from .contents import SILENT, Contents
+from .instancing import copies_in
+from .pixel_sizes import PixelSizes
+from .placement import Placement, Stand, placed_matrices
+from .taken import materials_of
+from .visibility import Visibilities, shown_in
 
 
 @dataclass
 class _Asset:
-    """What stands in the scene once or many times: a `Shape` or a Geometry, with one set of materials."""
+    """What stands in the scene once or many times, with one set of materials and one visibility.
+
+    `entries`: (`Copies`, the constant attributes of what they are drawn as, (4,) by key).
+    """
 
     content: object
     materials: tuple
-    rows: list = field(default_factory=list)  # 12 numbers a copy: the upper rows of its matrix
-    names: list = field(default_factory=list)
+    visibility: object
+    keys: frozenset = frozenset()
+    entries: list = field(default_factory=list)
 
 
 class ObjectSync:
-    """Collects the objects of a depsgraph, then places them in the engine scene."""
+    """Reads the objects of a depsgraph, then places them in the engine scene."""
 
-    def __init__(self, scene, shadings, lights, reports, recognise_setting, view_layer):
+    def __init__(self, scene, shadings, lights, reports, depsgraph, height, space=None):
         self._scene, self._shadings, self._lights, self._reports = scene, shadings, lights, reports
-        self._recognise, self._view_layer = recognise_setting, view_layer
-        self._override = view_layer.material_override
-        self._recognitions = Recognitions()
+        self._override = depsgraph.view_layer.material_override
+        self._visibilities = Visibilities(depsgraph.view_layer)
+        self._copies = copies_in(depsgraph, shown_in(space))
+        self._contents = Contents(depsgraph, PixelSizes(scene.camera, height, self._copies), reports)
         self._assets = {}
-        self._of_object = {}
-        self._geometries = {}
-        self._closed = {}
+        self._found = {}
 
-    def collect(self, depsgraph):
-        """Go once through all objects and instances; none of them lives longer than its step, so values are copied."""
-        for instance in depsgraph.object_instances:
-            if not instance.show_self:
-                continue
-            obj = instance.object
-            kind = obj.type
-            if kind in _SILENT:
-                continue
-            if kind == "LIGHT":
-                self._lights.add(obj, np.array(instance.matrix_world, np.float64))
-                continue
-            asset = self._asset_of(obj, kind)
-            if asset is not None:
-                matrix = instance.matrix_world
-                for row in range(3):
-                    asset.rows.extend(matrix[row])
-                asset.names.append(obj.name)
+    def read(self):
+        """Find what everything is drawn as; how many objects were taken as each kind, and the number of `instances`."""
+        counts = Counter()
+        for copies in self._copies:
+            if copies.kind == "LIGHT":
+                for matrix in copies.matrices.astype(np.float64):
+                    self._lights.add(copies.obj, matrix)
+            elif copies.kind not in SILENT:
+                for asset, constants in self._assets_of(copies):
+                    asset.entries.append((copies, constants))
+                    counts["instances" if copies.are_instances else asset.content.kind] += len(copies)
+        return dict(counts)
 
     def place(self):
         """Put every copy into the scene; those that cannot be, scaled to zero or nowhere, are reported."""
+        placement = Placement(self._scene)
         for asset in self._assets.values():
-            matrices = np.zeros((len(asset.names), 4, 4))
-            matrices[:, 3, 3] = 1.0
-            matrices[:, :3] = np.reshape(asset.rows, (-1, 3, 4))
-            good = placeable(asset.content, matrices)
-            for i in np.flatnonzero(~good):
-                finite = np.isfinite(matrices[i]).all()
-                why = "is scaled to zero along an axis" if finite else "has a place or a scale that is not finite"
-                self._reports.warn(f"object {asset.names[i]!r} {why} and is not rendered")
+            matrices = [copies.matrices for copies, _ in asset.entries]
+            matrices = matrices[0] if len(matrices) == 1 else np.concatenate(matrices)
+            world, good = placed_matrices(asset.content.drawn, matrices)
+            self._report_lost(asset, matrices, good)
             if good.any():
-                self._place(asset, matrices[good], asset.names[int(np.argmax(good))])
+                drawn = asset.content.drawn
+                name = asset.entries[_entry_of(asset, int(np.argmax(good)))][0].obj.name
+                stand = Stand(drawn, asset.materials, asset.visibility, name, world, self._attributes(asset))
+                placement.place(stand.take(good))
+        placement.finish()
 
-    def _place(self, asset, matrices, name):
-        if isinstance(asset.content, Geometry):
-            self._scene.instances.extend(Instance(asset.content, m, asset.materials, name) for m in matrices)
-        else:
-            place_shape(self._scene, asset.content, matrices, asset.materials, name)
+    def _attributes(self, asset):
+        """The attributes of an asset's copies, (n, 4) float32 by key; 0 where there is none."""
+        if not asset.keys:
+            return {}
+        ends = np.cumsum([0, *(len(copies) for copies, _ in asset.entries)])
+        found = {}
+        for (copies, constants), start, end in zip(asset.entries, ends[:-1], ends[1:], strict=True):
+            values = constants | copies.values(asset.keys)
+            self._report_unread(copies, asset.keys - values.keys())
+            for key, of_copies in values.items():
+                if key not in found:
+                    found[key] = np.zeros((ends[-1], 4), np.float32)
+                found[key][start:end] = of_copies
+        return found
 
-    def _asset_of(self, obj, kind):
-        """The asset of which an object is a copy; None, reported, where it shows nothing."""
-        key = original_key(obj), data_key(obj.data)
-        if key not in self._of_object:
-            self._of_object[key] = self._read(obj, kind)
-        return self._of_object[key]
+    def _report_unread(self, copies, keys):
+        """Name the attributes of instances made by geometry nodes within older instancers, which Blender does not tell.
+        Before Blender 4.5 it tells none, which the material says."""
+        if copies.random_ids is None or not has_geometry_sets() or not _uses_nodes(copies.instancer):
+            return
+        for key in sorted(keys):
+            source, name, _ = parts_of(key)
+            if source == "instancer":
+                whose = f"instances within those of {copies.instancer.name!r}"
+                self._reports.warn(f"object {copies.obj.name!r}: the attribute {name!r} of {whose} is not rendered")
 
-    def _read(self, obj, kind):
-        shadings = self._shadings_of(obj)
-        self._report_flags(obj)
-        self._report_hair(obj)
-        if kind == "MESH":
-            content = self._mesh_content(obj, shadings)
-        elif kind == "POINTCLOUD":
-            content = self._points(obj)
-        else:
-            self._reports.warn(f"object {obj.name!r} is not rendered: it is {_NOT_RENDERED.get(kind, kind.lower())}")
-            content = None
-        if content is None:
-            return None
-        if any(shading.transmits for shading in shadings) and not self._is_closed(content, obj):
-            shadings = [self._shadings.of_sheet(shading) for shading in shadings]
-        materials = tuple(shading.index for shading in shadings)
-        return self._assets.setdefault((id(content), materials), _Asset(content, materials))
+    def _report_lost(self, asset, matrices, good):
+        """Name the objects, each once, of which copies cannot be drawn."""
+        bad = np.flatnonzero(~good)
+        if not len(bad):
+            return
+        finite = np.isfinite(matrices[bad]).all(axis=(1, 2))
+        for rows, why in ((finite, "scaled to zero"), (~finite, "in a place or of a scale that is not finite")):
+            counts = np.bincount(_entry_of(asset, bad[rows]), minlength=len(asset.entries))
+            for entry in np.flatnonzero(counts):
+                copies, lost = asset.entries[entry][0], counts[entry]
+                which = "" if not copies.are_instances else f": {lost:,} of {len(copies):,} instances"
+                verb = "are" if which and lost > 1 else "is"
+                self._reports.warn(f"object {copies.obj.name!r}{which} {verb} {why} and {verb} not rendered")
 
-    def _is_closed(self, content, obj):
-        """Whether an object's surface is the whole border of a body."""
-        if isinstance(content, Shape):
-            return is_closed_shape(content)
-        if obj.type != "MESH":
-            return True  # the spheres of a point cloud
-        key = data_key(obj.data)
-        if key not in self._closed:
-            self._closed[key] = is_closed_mesh(obj.data)
-        return self._closed[key]
+    def _assets_of(self, copies):
+        """The assets, with constant attributes, of which these are copies; none, reported, where nothing shows."""
+        visibility = self._visibilities.of(copies.obj, copies.root)
+        if not visibility:
+            return ()
+        shadings = self._shadings_of(copies)
+        key = self._contents.key(copies), tuple(shading.index for shading in shadings), visibility
+        if key not in self._found:
+            self._found[key] = tuple(self._read(copies, shadings, visibility))
+        return self._found[key]
 
-    def _report_flags(self, obj):
-        """Name the settings of visibility that are not rendered."""
-        if not all(getattr(obj, name) for name in _VISIBLE_TO):
-            self._reports.warn(f"object {obj.name!r}: its ray visibility is not rendered, all rays see it")
-        flags = {
-            "is not rendered as a holdout": obj.is_holdout or obj.original.holdout_get(view_layer=self._view_layer),
-            "is not rendered as a shadow catcher": obj.is_shadow_catcher,
-            "is indirect only, which is not rendered: the camera sees it": obj.original.indirect_only_get(
-                view_layer=self._view_layer
-            ),
-        }
-        for flag, is_set in flags.items():
-            if is_set:
-                self._reports.warn(f"object {obj.name!r}: it {flag}")
+    def _read(self, copies, shadings, visibility):
+        for content in self._contents.of(copies, shadings):
+            of_content = shadings
+            if not content.is_closed:
+                of_content = tuple(self._shadings.of_sheet(shading) for shading in shadings)
+            materials = tuple(shading.index for shading in of_content)
+            key = id(content.drawn), materials, visibility
+            if key not in self._assets:
+                keys = frozenset(name for shading in of_content for name in shading.attributes)
+                self._assets[key] = _Asset(content, materials, visibility, keys)
+            yield self._assets[key], content.constants
 
-    def _report_hair(self, obj):
-        for system in obj.particle_systems:
-            if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
-                self._reports.warn(f"object {obj.name!r}: the hair of {system.name!r} is not rendered")
-
-    def _shadings_of(self, obj):
-        """The `Shading` of each of the object's slots, at least one."""
+    def _shadings_of(self, copies):
+        """The `Shading` of each slot, at least one."""
         if self._override is not None:
             return (self._shadings.of(self._override),)
-        return tuple(self._shadings.of(slot.material) for slot in obj.material_slots) or (self._shadings.of(None),)
-
-    def _mesh_content(self, obj, shadings):
-        mesh, primitive = obj.data, obj.conic.primitive
-        if not len(mesh.polygons) and primitive != "PLANE":
-            if primitive not in ("AUTO", "MESH"):
-                shape = primitive.lower()
-                self._reports.warn(
-                    f"object {obj.name!r} is not rendered: its {shape} has no faces to take its size from"
-                )
-            return None
-        taken = taken_as(primitive, mesh, shadings, self._recognise, self._recognitions)
-        if taken.problem:
-            self._reports.warn(f"object {obj.name!r}: rendered as a {taken.reason}")
-        if taken.shape is None:
-            return self._triangles(obj, mesh, shadings)
-        for shading in shadings:
-            if shading.uv is not None and not shading.uv.plain:
-                what = f"the Mapping node of material {shading.name!r}"
-                self._reports.warn(f"object {obj.name!r}: {what} is not rendered on an exact shape")
-        return taken.shape
-
-    def _triangles(self, obj, mesh, shadings):
-        """The Geometry of a mesh, shared by all objects that have the mesh and its uv needs in common."""
-        sources = tuple(shading.uv for shading in shadings)
-        key = data_key(mesh), len(shadings), sources if any(sources) else ()
-        if key not in self._geometries:
-            read = read_triangles(mesh, len(shadings), key[2])
-            if read.dropped:
-                dropped, verb = ("1 triangle", "is") if read.dropped == 1 else (f"{read.dropped} triangles", "are")
-                self._reports.warn(f"object {obj.name!r}: {dropped} with NaN or infinite vertices {verb} not rendered")
-            self._geometries[key] = None if read.triangles is None else Geometry(read.triangles, name=mesh.name)
-        return self._geometries[key]
-
-    def _points(self, obj):
-        """A point cloud as a Geometry of spheres; points whose place or radius is no number or 0 are left out."""
-        key = data_key(obj.data)
-        if key not in self._geometries:
-            self._geometries[key] = _spheres(obj.data)
-        return self._geometries[key]
+        made = materials_of(copies.obj, copies.data, copies.is_own)
+        return tuple(self._shadings.of(material) for material in made) or (self._shadings.of(None),)
 
 
-def _spheres(cloud):
-    count = len(cloud.points)
-    if not count:
-        return None
-    center, radius = np.empty(count * 3, np.float32), np.full(count, 0.01, np.float32)  # Blender's own default
-    cloud.attributes["position"].data.foreach_get("vector", center)
-    if "radius" in cloud.attributes:
-        cloud.attributes["radius"].data.foreach_get("value", radius)
-    center = center.reshape(-1, 3)
-    good = np.isfinite(center).all(axis=1) & np.isfinite(radius) & (radius > 0.0)
-    return Geometry(Spheres(center=center[good], radius=radius[good]), name=cloud.name) if good.any() else None
+def _entry_of(asset, rows):
+    """The entries of an asset to which its copies `rows` belong."""
+    ends = np.cumsum([len(copies) for copies, _ in asset.entries])
+    return np.searchsorted(ends, rows, side="right")
+
+
+def _uses_nodes(instancer):
+    """Whether geometry nodes have a part in what an object instances."""
+    collection = instancer.instance_collection
+    objects = (instancer, *(collection.all_objects if collection is not None else ()))
+    return any(modifier.type == "NODES" for obj in objects for modifier in obj.modifiers)

@@ -1,179 +1,193 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each object is taken as, and why: an exact shape or its mesh."""
+"""What a render takes an object as, in words, for its panel."""
 
-from dataclasses import dataclass
-from hashlib import blake2b
+from collections import Counter
 
+import bpy
 import numpy as np
 
+from ..engine.errors import SceneError
 from ..engine.scene import Scene
-from .keys import data_key
-from .meshes import read_mesh
-from .recognise import Recognition, recognise
+from .camera import camera_of_render
+from .compat import has_geometry_sets
+from .contents import Contents
+from .geometry_sets import components_of, geometry_set_of
+from .instancing import Copies
+from .pixel_sizes import PixelSizes
 from .reports import Reports
 from .shading import Shadings
-from .shapes import Shape, fitted, plane_shape, shape_of
-
-
-@dataclass(frozen=True)
-class Taken:
-    """`kind` MESH, SPHERE, CYLINDER, CONE, DISC or PLANE, the reason as a sentence, and the `Shape`, None for a mesh.
-    `problem`: the object's own setting asks for what cannot be."""
-
-    kind: str
-    reason: str
-    shape: Shape | None = None
-    problem: bool = False
-
-
-#: Recognitions by a digest of all that they depend on: copies of a mesh and later syncs have them at once.
-_BY_CONTENT = {}
-_REMEMBER_AT_MOST = 1 << 14
-_REMEMBER_FACES = 1 << 17  # of larger meshes a digest takes longer than a look at their counts
-
-
-def _recognise_once(arrays):
-    """The Recognition of MeshArrays, remembered by their content."""
-    if len(arrays.smooth) > _REMEMBER_FACES:
-        return recognise(arrays)
-    digest = blake2b(digest_size=16)
-    for part in (arrays.positions, arrays.corner_vertex, arrays.face_offset, arrays.smooth, arrays.material, arrays.uv):
-        digest.update(b"-" if part is None else np.int64(part.size).tobytes() + part.tobytes())
-    key = digest.digest()
-    if key not in _BY_CONTENT:
-        if len(_BY_CONTENT) >= _REMEMBER_AT_MOST:
-            _BY_CONTENT.clear()
-        _BY_CONTENT[key] = recognise(arrays)
-    return _BY_CONTENT[key]
-
-
-class Recognitions:
-    """What the meshes of one sync are recognised as, each read once."""
-
-    def __init__(self):
-        self._recognised = {}
-        self._shapes = {}
-
-    def of(self, mesh, uv_map):
-        """The Recognition of an evaluated mesh, together with one of its uv maps: its name, empty for the active one,
-        None where the uv does not matter."""
-        key = data_key(mesh), uv_map
-        if key not in self._recognised:
-            self._recognised[key] = _recognise_once(read_mesh(mesh, uv_map))
-        return self._recognised[key]
-
-    def fitted(self, mesh, kind):
-        """The Recognition as a shape of `kind` that is inscribed in the mesh's bounding box, None where it has none."""
-        key = data_key(mesh), kind, "fitted"
-        if key not in self._recognised:
-            positions = read_mesh(mesh).positions
-            positions = positions[np.isfinite(positions).all(axis=1)]
-            self._recognised[key] = fitted(kind, positions) if len(positions) else None
-        return self._recognised[key]
-
-    def shape(self, recognition):
-        """The `Shape` of a Recognition, the same object each time."""
-        if id(recognition) not in self._shapes:
-            self._shapes[id(recognition)] = recognition, shape_of(recognition)
-        return self._shapes[id(recognition)][1]
-
-
-def taken_as(primitive, mesh, shadings, recognise_setting, recognitions):
-    """What an object is taken as (`Taken`).
-
-    `primitive`: the object's own setting; `recognise_setting`: the scene's ALWAYS, SMOOTH or NEVER; `shadings`: the
-    `Shading` of each slot, which says whether its images need the mesh's uv map.
-    """
-    if primitive == "MESH":
-        return Taken("MESH", "mesh: chosen in the object's settings")
-    if primitive == "PLANE":
-        return Taken("PLANE", "plane without end: chosen in the object's settings", _PLANE)
-    if primitive != "AUTO":
-        return _chosen(primitive, mesh, recognitions)
-    if recognise_setting == "NEVER":
-        return Taken("MESH", "mesh: recognition is switched off in the scene's settings")
-    recognition = recognitions.of(mesh, _uv_map(shadings))
-    if recognition.kind == "MESH":
-        return Taken("MESH", recognition.reason)
-    if recognise_setting == "SMOOTH" and not recognition.all_smooth:
-        return Taken("MESH", "mesh: it is shaded flat, and the scene's settings recognize smooth shapes only")
-    conflict = _uv_conflict(recognition, shadings)
-    if conflict:
-        return Taken("MESH", conflict)
-    return Taken(recognition.kind, recognition.reason, recognitions.shape(recognition))
-
-
-_PLANE = plane_shape()
-
-
-def _chosen(primitive, mesh, recognitions):
-    recognition = recognitions.of(mesh, "")
-    if recognition.kind != primitive:
-        recognition = recognitions.fitted(mesh, primitive)
-    if recognition is None:
-        return Taken(
-            "MESH", f"mesh: a {primitive.lower()} is chosen, but its bounding box is flat or empty", problem=True
-        )
-    return Taken(recognition.kind, recognition.reason, recognitions.shape(recognition))
-
-
-def _uv_map(shadings):
-    """The uv map that the images of the materials need; None where they need none."""
-    return next((shading.uv.map for shading in shadings if shading.uv is not None), None)
-
-
-def _uv_conflict(recognition: Recognition, shadings):
-    """Why images by uv keep a recognised mesh a mesh, or an empty string."""
-    first = _uv_map(shadings)
-    for part in recognition.parts:
-        shading = shadings[min(part.material, len(shadings) - 1)]
-        if shading.uv is None:
-            continue
-        if not shading.uv.plain:
-            return f"mesh: material {shading.name!r} moves the uv map by a Mapping node"
-        if shading.uv.map != first or not part.uv.matches:
-            return f"mesh: material {shading.name!r} uses the uv map, which is not the {recognition.kind.lower()}'s own"
-    return ""
-
+from .taken import Recognitions, materials_of, taken_as
+from .visibility import shows_hair
 
 _NOUNS = {"CURVE": "curve", "FONT": "text", "META": "metaball", "SURFACE": "NURBS surface"}
+#: Of longer curves the pieces are not counted: a panel must not wait for them.
+_COUNT_POINTS = 1 << 16
+_NO_FACES = "mesh: it has no faces"
 
 
 def describe(obj, depsgraph):
-    """What a render takes an object as, for its panel: (kind, reason). `kind` is MESH, SPHERE, CYLINDER, CONE, DISC,
-    PLANE, or NONE for what is no surface.
+    """What a render takes an object as: (kind, reason). `kind` is MESH, SPHERE, CYLINDER, CONE, DISC, PLANE,
+    POINT_CLOUD, CURVES, HAIR or INSTANCES, or NONE for what is not rendered.
 
     A panel may ask each time that it is drawn: recognition is repeated only when the mesh has changed.
     """
     evaluated = obj.evaluated_get(depsgraph)
-    primitive = evaluated.conic.primitive
-    if evaluated.type in _NOUNS:
-        return _describe_made(evaluated, primitive)
-    if evaluated.type != "MESH":
-        return "NONE", "it is no surface"
-    mesh = evaluated.data
-    if not len(mesh.polygons) and primitive not in ("AUTO", "MESH", "PLANE"):
-        return "NONE", f"not rendered: the {primitive.lower()} has no faces to take its size from"
+    parts = [_own(evaluated, depsgraph), *_made(evaluated, depsgraph)]
+    shown = [part for part in parts if part[0] != "NONE" and part[1] != _NO_FACES] or parts[:1]
+    return shown[0][0], "; ".join(reason for _, reason in shown)
+
+
+def _own(obj, depsgraph):
+    """(kind, reason) of an evaluated object without what its geometry nodes or particles make."""
+    if obj.type in _NOUNS:
+        return _own_made(obj, depsgraph)
+    if obj.type == "MESH":
+        return _own_mesh(obj, depsgraph)
+    if obj.type == "POINTCLOUD":
+        return _points(obj.data)
+    if obj.type == "CURVES":
+        return _strands(Copies(obj, "CURVES", obj.data, _matrix(obj)), depsgraph)
+    return "NONE", "not rendered: it is a volume" if obj.type == "VOLUME" else "it is no surface"
+
+
+def _own_mesh(obj, depsgraph):
+    mesh, primitive = obj.data, obj.conic.primitive
     if not len(mesh.polygons) and primitive != "PLANE":
-        return "MESH", "mesh: it has no faces"
-    shadings = Shadings(Scene(), None, Reports(lambda level, message: None))
-    slots = tuple(shadings.of(slot.material) for slot in evaluated.material_slots) or (shadings.of(None),)
+        if len(mesh.edges) and obj.conic.strand_radius > 0.0:
+            return _strands(Copies(obj, "MESH", mesh, _matrix(obj)), depsgraph)
+        if primitive not in ("AUTO", "MESH"):
+            return "NONE", f"not rendered: the {primitive.lower()} has no faces to take its size from"
+        return "MESH", _NO_FACES
+    shadings = Shadings(Scene(), None, _silent())
+    slots = tuple(shadings.of(material) for material in materials_of(obj, mesh)) or (shadings.of(None),)
     taken = taken_as(primitive, mesh, slots, depsgraph.scene.conic.recognise, Recognitions())
     return taken.kind, taken.reason
 
 
-def _describe_made(evaluated, primitive):
-    """`describe` of an evaluated curve, text, metaball or surface, from which Blender makes a mesh, or lines alone."""
-    noun = _NOUNS[evaluated.type]
-    if evaluated.type != "META" and not _has_faces(evaluated):  # of a family of metaballs one has the faces of all
-        return "NONE", f"not rendered: this {noun} has no surface; give it a bevel, an extrusion or a filling"
+def _own_made(obj, depsgraph):
+    """Of a curve, text, metaball or surface, from which Blender makes a mesh, or lines alone."""
+    noun, primitive = _NOUNS[obj.type], obj.conic.primitive
+    if obj.type != "META" and not _has_faces(obj):  # of a family of metaballs one has the faces of all
+        if obj.type == "CURVE" and obj.conic.strand_radius > 0.0:
+            return _strands(Copies(obj, "CURVE", obj.data, _matrix(obj)), depsgraph)
+        remedy = "a bevel, an extrusion, a filling or a radius of strands" if noun == "curve" else "an extrusion"
+        return "NONE", f"not rendered: this {noun} has no surface; give it {remedy}"
     if primitive in ("AUTO", "MESH"):
         return "MESH", f"mesh: made from a {noun}"
     return primitive, f"{primitive.lower()}: chosen in the object's settings"
 
 
-def _has_faces(evaluated):
-    mesh = evaluated.to_mesh()
+def _has_faces(obj):
+    mesh = obj.to_mesh()
     has_faces = mesh is not None and len(mesh.polygons) > 0
-    evaluated.to_mesh_clear()
+    obj.to_mesh_clear()
     return has_faces
+
+
+def _points(cloud):
+    return "POINT_CLOUD", f"point cloud: {_counted(len(cloud.points), 'sphere')}"
+
+
+def _strands(copies, depsgraph):
+    """Of hair, curves without bevel and edges without faces: how many, and of which pieces they are made."""
+    data, noun = copies.data, "edge" if copies.kind == "MESH" else "strand"
+    lines = len(data.edges) if copies.kind == "MESH" else len(data.splines if copies.kind == "CURVE" else data.curves)
+    points = 0 if copies.kind == "CURVE" else len(data.vertices if copies.kind == "MESH" else data.points)
+    text = _counted(lines, noun)
+    pieces = _pieces(copies, depsgraph) if points <= _COUNT_POINTS else None
+    if pieces is None:
+        return "CURVES", text
+    if not pieces:
+        return "NONE", f"not rendered: {text}, without a radius above 0"
+    return "CURVES", f"{text}: {', '.join(_counted(count, kind) for kind, count in sorted(pieces.items()))}"
+
+
+def _pieces(copies, depsgraph):
+    """The number of primitives by kind of strands as the camera sees them; None where there is no camera."""
+    render = depsgraph.scene.render
+    try:
+        camera = camera_of_render(None, depsgraph, render.resolution_x, render.resolution_y, reports=_silent())
+    except SceneError:
+        return None
+    contents = Contents(depsgraph, PixelSizes(camera, render.resolution_y, [copies]), _silent())
+    found = Counter()
+    for content in contents.of(copies, (Shadings(Scene(), None, _silent()).of(None),)):
+        found.update({part.kind: len(part) for _, part in content.drawn.kinds()})
+    return found
+
+
+def _made(obj, depsgraph):
+    """Yield (kind, reason) of what an evaluated object makes besides itself."""
+    if shows_hair(obj):
+        names = ", ".join(repr(s.name) for s in obj.particle_systems if s.settings.type == "HAIR")
+        yield "HAIR", f"hair of {names}"
+    geometry_set = geometry_set_of(obj) if has_geometry_sets() else None
+    if geometry_set is not None:
+        yield from _components(obj, geometry_set, depsgraph)
+        copies = _instances(geometry_set)
+        if copies:
+            yield "INSTANCES", f"instances {copies}"
+            return
+    if obj.is_instancer:
+        yield from _older_instances(obj)
+
+
+def _components(obj, geometry_set, depsgraph):
+    for kind, data in components_of(obj, geometry_set, False):
+        if kind == "POINTCLOUD":
+            yield _points(data)
+        elif kind == "CURVES":
+            yield _strands(Copies(obj, kind, data, _matrix(obj), is_own=False), depsgraph)
+        elif kind == "VOLUME":
+            yield "NONE", "its volume is not rendered"
+
+
+def _instances(geometry_set):
+    """`7 copies of 'leaf' and 2 of collection 'twigs'` of instances made by geometry nodes; empty without any."""
+    cloud = geometry_set.instances_pointcloud()
+    if cloud is None:
+        return ""
+    references = geometry_set.instance_references()
+    of_instance = np.empty(len(cloud.points), np.int32)
+    cloud.attributes[".reference_index"].data.foreach_get("value", of_instance)
+    counts = np.bincount(of_instance, minlength=len(references))
+    found = Counter()
+    for reference, count in zip(references, counts, strict=True):
+        found[_name(reference)] += int(count)
+    first, *others = [(f"{count:,}", name) for name, count in found.most_common() if count]
+    noun = "copy" if first[0] == "1" else "copies"
+    named = [f"{first[0]} {noun} of {first[1]}", *(f"{count} of {name}" for count, name in others[:2])]
+    return " and ".join([*named, *([f"{len(others) - 2:,} others"] if len(others) > 2 else [])])
+
+
+def _name(reference):
+    if isinstance(reference, bpy.types.Object):
+        return repr(reference.name)
+    if isinstance(reference, bpy.types.Collection):
+        return f"collection {reference.name!r}"
+    return repr(reference.name) if getattr(reference, "name", "") else "what its geometry nodes make"
+
+
+def _older_instances(obj):
+    for system in obj.particle_systems:
+        settings = system.settings
+        of = settings.instance_object if settings.render_type == "OBJECT" else settings.instance_collection
+        if settings.render_type in ("OBJECT", "COLLECTION") and of is not None:
+            yield "INSTANCES", f"instances {of.name!r} on {_counted(len(system.particles), 'particle')}"
+    if obj.instance_type == "COLLECTION" and obj.instance_collection is not None:
+        yield "INSTANCES", f"instances the collection {obj.instance_collection.name!r}"
+    elif obj.instance_type in ("VERTS", "FACES") and obj.type == "MESH":
+        on = {"VERTS": (obj.data.vertices, "vertex"), "FACES": (obj.data.polygons, "face")}[obj.instance_type]
+        yield "INSTANCES", f"instances its children on {_counted(len(on[0]), on[1])}"
+
+
+def _counted(count, noun):
+    return f"{count:,} {noun if count == 1 else {'vertex': 'vertices'}.get(noun, noun + 's')}"
+
+
+def _matrix(obj):
+    return np.array(obj.matrix_world, np.float32)[None]
+
+
+def _silent():
+    return Reports(lambda level, message: None)

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The full sync: everything that Blender's depsgraph shows becomes one engine scene."""
 
+from dataclasses import dataclass, field
+
 from ..engine.scene import Scene
 from ..engine.settings import Settings
+from ..engine.timing import timed
 from .camera import camera_of_render
 from .images import Images
 from .lights import Lights
@@ -12,13 +15,24 @@ from .shading import Shadings
 from .world import read_world
 
 
-def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report):
+@dataclass
+class SyncStatistics:
+    """Of one sync: how many things were taken as each kind, where `instances` are copies that objects make, and
+    `seconds` by part."""
+
+    objects: dict = field(default_factory=dict)
+    seconds: dict = field(default_factory=dict)
+
+
+def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report, space=None, statistics=None):
     """The engine Scene of a depsgraph, for a frame of width x height pixels.
 
     `engine`: the RenderEngine that asks, None outside of a render. `camera`: an engine Camera to use instead of the
     scene's. `report(level, message)` is called once for each thing that is not rendered as it is. Raises SceneError
-    where there is no camera. No reference to Blender's data is kept.
+    where there is no camera. No reference to Blender's data is kept. `space`: the SpaceView3D that shows it, None for a
+    render. `statistics`: a `SyncStatistics` to fill.
     """
+    statistics = statistics or SyncStatistics()
     reports = Reports(report)
     if camera is None:
         camera = camera_of_render(engine, depsgraph, width, height, reports=reports)
@@ -29,11 +43,14 @@ def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report):
     view_layer = depsgraph.view_layer_eval
     world = view_layer.world_override or depsgraph.scene_eval.world
     scene.world = read_world(world, scene, images, reports)
-    shadings = Shadings(scene, images, reports)
+    shadings = Shadings(scene, images, reports, (view_layer, depsgraph.scene_eval, world))
     lights = Lights(scene, reports)
-    objects = ObjectSync(scene, shadings, lights, reports, depsgraph.scene_eval.conic.recognise, depsgraph.view_layer)
-    objects.collect(depsgraph)
-    objects.place()
+    with timed(statistics.seconds, "collect"):
+        objects = ObjectSync(scene, shadings, lights, reports, depsgraph, height, space)
+    with timed(statistics.seconds, "read"):
+        statistics.objects |= objects.read()
+    with timed(statistics.seconds, "place"):
+        objects.place()
     lights.finish()
     return scene
 

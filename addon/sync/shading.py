@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..engine.scene import Material
+from .attribute_nodes import AttributeNodes
+from .attributes import parts_of
 from .closures import principled, read_closure
-from .compat import node_tree
+from .compat import has_geometry_sets, node_tree
 from .keys import original_key
 from .lobes import Lobes
 from .nodes import output_source
@@ -20,20 +22,24 @@ DEFAULT = Material()  # Blender's grey, for a slot without material
 
 @dataclass(frozen=True)
 class Shading:
-    """A material of the scene: its number, the `UvSource` of its images, None where it has none, and whether light
-    goes through it."""
+    """A material of the scene: its number, the `UvSource` of its images, None where it has none, whether light goes
+    through it, and the keys of its attributes (see `attributes`)."""
 
     index: int
     uv: object = None
     name: str = ""
     transmits: bool = False
+    attributes: tuple = ()
 
 
 class Shadings:
-    """The materials of a scene, each read once, when an object first needs it."""
+    """The materials of a scene, each read once, when an object first needs it.
 
-    def __init__(self, scene, images, reports):
-        self._scene, self._images, self._reports = scene, images, reports
+    `layers`: the view layer, scene and world, whose properties attributes of the view layer are.
+    """
+
+    def __init__(self, scene, images, reports, layers=()):
+        self._scene, self._images, self._reports, self._layers = scene, images, reports, layers
         self._by_key = {}
         self._sheets = {}
 
@@ -56,13 +62,34 @@ class Shadings:
     def _read(self, material):
         if material is None:
             return Shading(self._scene.add_material(DEFAULT))
-        reader = NodeReader(f"material {material.name!r}", self._images, self._reports)
+        attributes = AttributeNodes(material, self._layers)
+        reader = NodeReader(f"material {material.name!r}", self._images, self._reports, attributes=attributes)
         read = read_material(material, reader)
-        return Shading(self._scene.add_material(read), reader.uv, material.name, max(read.transmit) > 0.0)
+        reader.finish()
+        keys = _attributes_of(read)
+        if any(parts_of(key)[0] == "instancer" for key in keys) and not has_geometry_sets():
+            reader.warn(
+                "attributes of instances are rendered from Blender 4.5 on; properties of objects are used instead"
+            )
+        return Shading(self._scene.add_material(read), reader.uv, material.name, max(read.transmit) > 0.0, keys)
+
+
+def _attributes_of(material):
+    """The keys of the attributes of an engine Material, sorted."""
+    keys = {getattr(material, f"{color}_attribute") for color in ("diffuse", "reflect", "transmit", "glow")}
+    return tuple(sorted(keys - {""}))
 
 
 def read_material(material, reader):
     """The engine's Material of a Blender material."""
+    return replace(
+        _shaded(material, reader),
+        cull_back=material.use_backface_culling,
+        cull_back_shadow=material.use_backface_culling_shadow,
+    )
+
+
+def _shaded(material, reader):
     tree = node_tree(material)
     if tree is None:
         return _without_nodes(material).material()
@@ -79,7 +106,9 @@ def read_material(material, reader):
     else:
         lobes = read_closure(surface, reader)
     if lobes.blurred:
-        reader.warn("its mix of an image with another or with a color is rendered as the stronger image, brightened")
+        reader.warn(
+            "its mix of an image or attribute with another or with a color is rendered as the stronger one, brightened"
+        )
     return lobes.material(_absorption(volume, reader))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers and colours that feed a shader: constants, images and the few nodes between that keep them such."""
+"""Numbers and colours that feed a shader: constants, images, attributes, and the few nodes that keep them such."""
 
 from dataclasses import dataclass
 from math import cos, sin
@@ -34,20 +34,30 @@ class UvSource:
 class NodeReader:
     """Reads the nodes of one material, world or light, called `user` in reports; notes the uv that its images take.
 
-    `images` (an `Images`) may be None where only the uv is wanted: no image is then read. `panorama`: colours are
-    looked up by direction, as in a world.
+    `images` (an `Images`) may be None where only the uv is wanted: no image is then read. `attributes`: the
+    `AttributeNodes` of a material, None where there are no attributes. `panorama`: colours are looked up by
+    direction, as in a world. Once all is read, `finish` sends the rest of the reports.
     """
 
-    def __init__(self, user, images, reports, *, panorama=False):
-        self.user, self._images, self._reports, self._panorama = user, images, reports, panorama
+    def __init__(self, user, images, reports, *, attributes=None, panorama=False):
+        self.user, self._images, self._reports = user, images, reports
+        self._attributes, self._panorama = attributes, panorama
+        self._replaced = {}
         self.uv = None
 
     def warn(self, message):
         self._reports.warn(f"{self.user}: {message}")
 
     def not_understood(self, source, instead):
-        """Report the node of `source`, once, with what is used instead of it."""
-        self.warn(f"node {source.node.name!r} is not rendered; {instead} is used instead")
+        """Report the node of `source` with what is used instead of it: all of that in one message."""
+        replacements = self._replaced.setdefault(source.node.name, [])
+        if instead not in replacements:
+            replacements.append(instead)
+
+    def finish(self):
+        """Report the nodes that were not understood."""
+        for name, replacements in self._replaced.items():
+            self.warn(f"node {name!r} is not rendered; {listed(replacements, 'is', 'are')} used instead")
 
     def left_out(self, source, what):
         """Report the node of `source`, once, and that there is nothing instead of `what` it makes."""
@@ -65,6 +75,9 @@ class NodeReader:
             seen = 1.0 if source.output.identifier == "Is Camera Ray" else 0.0
             self.not_understood(source, "what the camera sees")
             return seen
+        attribute = self._attribute(source)
+        if attribute is not None and not attribute.varies:
+            return _mean(attribute.rgb)
         own = _mean(source.constant)
         self.not_understood(source, f"the value {own:.3g} of {source.socket.name}")
         return own
@@ -77,11 +90,19 @@ class NodeReader:
             return _constant(source.output.default_value)
         if source.type == "TEX_IMAGE" or (source.type == "TEX_ENVIRONMENT" and self._panorama):
             return self._image(source)
-        if source.type in ("MIX", "MIX_RGB") and (mixed := self._mixed(source)) is not None:
-            return mixed
+        if source.type == "AMBIENT_OCCLUSION":
+            self.not_understood(source, "its color without occlusion")
+            shown = source.output.identifier == "Color"
+            return self.color(source.input("Color")) if shown else Value((1.0, 1.0, 1.0))
+        read = self._mixed(source) if source.type in ("MIX", "MIX_RGB") else self._attribute(source)
+        if read is not None:
+            return read
         own = _constant(source.constant)
         self.not_understood(source, f"the socket's own color {_shown(own.rgb)} for {source.socket.name}")
         return own
+
+    def _attribute(self, source):
+        return self._attributes.value(source) if self._attributes is not None else None
 
     def _image(self, source):
         if source.output.identifier == "Alpha":
@@ -144,12 +165,8 @@ class NodeReader:
             return a.plus(b.times(factor))
         if node.blend_type == "MIX":
             return a.times(1.0 - factor).plus(b.times(factor))
-        if a.image >= 0 and b.image >= 0:
-            return None
-        if b.image >= 0:
-            a, b = b, a
-            return a.times(np.multiply(b.rgb, factor)).plus(b.times(1.0 - factor))
-        return a.times(1.0 - factor + factor * np.asarray(b.rgb))
+        product = a.product(b)
+        return None if product is None else a.times(1.0 - factor).plus(product.times(factor))
 
 
 def mapping_matrix(source, reader):
@@ -207,3 +224,9 @@ def _mean(value):
 
 def _shown(rgb):
     return "(" + ", ".join(f"{c:.2f}" for c in rgb) + ")"
+
+
+def listed(things, verb, plural_verb):
+    """Things in a sentence, with its verb."""
+    *most, last = things
+    return f"{', '.join(most)} and {last} {plural_verb}" if most else f"{last} {verb}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colours of a shader as the engine takes them: a constant, or a constant times an image."""
+"""Colours of a shader as the engine takes them: a constant, times an image, times an attribute."""
 
 from dataclasses import dataclass, replace
 
@@ -18,19 +18,31 @@ def luminance(rgb):
 
 @dataclass(frozen=True)
 class Value:
-    """`rgb` (3,), times the image number `image` of the scene (-1: none), whose mean colour is `mean` (3,).
+    """`rgb` (3,), times the image number `image` of the scene (-1: none), times the attribute of the key `attribute`
+    (empty: none). `mean` (3,): the mean colour of what varies.
 
     `blurred`: something that varies differently over the surface was added, and only its average is in it.
     """
 
     rgb: tuple = (0.0, 0.0, 0.0)
     image: int = -1
+    attribute: str = ""
     mean: tuple = (1.0, 1.0, 1.0)
     blurred: bool = False
 
+    @classmethod
+    def of_attribute(cls, key):
+        """An attribute alone. Materials are read before the data: its mean is taken as grey."""
+        return cls((1.0, 1.0, 1.0), attribute=key, mean=(0.5, 0.5, 0.5))
+
+    @property
+    def varies(self):
+        """Whether it is more than a constant."""
+        return self.image >= 0 or bool(self.attribute)
+
     @property
     def average(self):
-        """The colour (3,) where no image can be used."""
+        """The colour (3,) where neither image nor attribute can be used."""
         return np.multiply(self.rgb, self.mean)
 
     @property
@@ -42,19 +54,31 @@ class Value:
         """Multiplied by a number or by a colour (3,)."""
         return replace(self, rgb=tuple(np.multiply(self.rgb, factor)))
 
+    def product(self, other):
+        """The product of two Values; None for two images or two attributes, which the engine cannot multiply."""
+        if (self.image >= 0 and other.image >= 0) or (self.attribute and other.attribute):
+            return None
+        return Value(
+            tuple(np.multiply(self.rgb, other.rgb)),
+            max(self.image, other.image),
+            self.attribute or other.attribute,
+            tuple(np.multiply(self.mean, other.mean)),
+            self.blurred or other.blurred,
+        )
+
     def plus(self, other):
-        """The sum. Of two different images the stronger one stays; the other is added as its average."""
-        if other.image == self.image:
+        """The sum. Of two that vary differently the stronger one stays; the other is added as its average."""
+        if (other.image, other.attribute) == (self.image, self.attribute):
             return replace(self, rgb=tuple(np.add(self.rgb, other.rgb)), blurred=self.blurred or other.blurred)
-        if other.weight > self.weight or (other.image >= 0 > self.image and other.weight == self.weight):
+        if other.weight > self.weight or (other.varies and not self.varies and other.weight == self.weight):
             return other.plus(self)
         share = np.divide(other.average, np.maximum(self.mean, 1e-3))
         blurred = self.blurred or other.blurred or other.weight > _UNSEEN * self.weight
         return replace(self, rgb=tuple(np.add(self.rgb, share)), blurred=blurred)
 
     def sqrt(self):
-        """The root, of an image by its average."""
-        if self.image < 0:
+        """The root; where it varies by its average."""
+        if not self.varies:
             return Value(tuple(np.sqrt(np.maximum(self.rgb, 0.0))))
-        # sqrt(rgb * image) is near (rgb * image) / sqrt(average) around the average.
+        # The root of x is near x / sqrt(average) around the average.
         return self.times(1.0 / np.sqrt(np.maximum(self.average, 1e-3)))

@@ -20,6 +20,12 @@ def read_world(world, scene, images, reports):
     if tree is None:
         return _of(Value(tuple(world.color)))
     reader = NodeReader(f"world {world.name!r}", images, reports, panorama=True)
+    read = _read(world, tree, scene, reader)
+    reader.finish()
+    return read
+
+
+def _read(world, tree, scene, reader):
     surface = output_source(tree, "Surface")
     volume = output_source(tree, "Volume")
     if volume is not None and volume.node is not None:

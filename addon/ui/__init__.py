@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Panels, a file a subject, and which of Blender's own panels are shown when Conic is the render engine."""
 
-from . import light, object_shape, render_settings, standard_panels
+from . import light, material, object_shape, object_visibility, render_settings, standard_panels, statistics
 
-_MODULES = (standard_panels, render_settings, object_shape, light)
+_MODULES = (standard_panels, render_settings, statistics, object_shape, object_visibility, material, light)
 
 
 def register():

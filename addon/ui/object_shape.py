@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panel of an object: as which shape to render it, what it was taken as, and why."""
+"""The panel of an object: as which shape to render it, how thick its lines are, what it was taken as, and why."""
 
 import textwrap
 
@@ -8,10 +8,12 @@ import bpy
 from ..properties import PRIMITIVES
 from ..sync.objects import describe
 from .base import PropertiesPanel
+from .object_visibility import is_seen
 
+#: Types of objects whose faces can stand for a shape.
 SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
-NAMES = {identifier: name for identifier, name, _ in PRIMITIVES}
+NAMES = {identifier: name for identifier, name, _ in PRIMITIVES} | {"NONE": "Nothing"}
 
 #: What objects were taken as, by session_uid, until anything changes: a panel is drawn far more often.
 _described = {}
@@ -29,22 +31,33 @@ def described(obj, depsgraph):
     return _described[obj.session_uid]
 
 
+def may_have_lines(obj, depsgraph):
+    """Whether an object may show curves or edges that have no thickness of their own."""
+    if obj.type != "MESH":
+        return obj.type == "CURVE"
+    makes_curves = any(modifier.type == "NODES" for modifier in obj.modifiers)
+    return makes_curves or obj.conic.strand_radius > 0.0 or not obj.evaluated_get(depsgraph).data.polygons
+
+
 class CONIC_OBJECT_PT_shape(PropertiesPanel, bpy.types.Panel):
     bl_label = "Conic"
     bl_context = "object"
 
     @classmethod
     def poll(cls, context):
-        return context.object and context.object.type in SHAPED and super().poll(context)
+        return is_seen(context.object) and super().poll(context)
 
     def draw(self, context):
-        layout = self.layout
+        layout, obj, depsgraph = self.layout, context.object, context.evaluated_depsgraph_get()
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.prop(context.object.conic, "primitive")
-        kind, reason = described(context.object, context.evaluated_depsgraph_get())
+        if obj.type in SHAPED:
+            layout.prop(obj.conic, "primitive")
+        if may_have_lines(obj, depsgraph):
+            layout.prop(obj.conic, "strand_radius")
+        kind, reason = described(obj, depsgraph)
         column = layout.column(align=True)
-        column.label(text=f"Rendered as: {NAMES.get(kind, kind)}", icon="INFO")
+        column.label(text=f"Rendered as: {NAMES.get(kind) or kind.replace('_', ' ').capitalize()}", icon="INFO")
         column.active = False
         for line in textwrap.wrap(reason, max(24, context.region.width // 9)):
             column.label(text=line)

@@ -42,7 +42,11 @@ class CONIC_RENDER_PT_shapes(RenderPanel, bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.prop(context.scene.conic, "recognise")
+        settings = context.scene.conic
+        layout.prop(settings, "recognise")
+        column = layout.column(align=True)
+        column.prop(settings, "curve_sampling")
+        column.prop(settings, "curve_tolerance" if settings.curve_sampling == "PIXELS" else "curve_steps")
 
 
 class CONIC_RENDER_PT_film(RenderPanel, bpy.types.Panel):

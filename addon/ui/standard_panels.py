@@ -20,7 +20,9 @@ REFUSED = {
     "DATA_PT_spot",
     "DATA_PT_falloff_curve",
     "DATA_PT_volume_render",
+    "EEVEE_MATERIAL_PT_viewport_settings",
     "NODE_DATA_PT_light",
+    "OBJECT_PT_shading",
     "SCENE_PT_audio",
 }
 REFUSED_SUBJECTS = ("freestyle", "lightprobe")  # in the panel's name

@@ -97,3 +97,63 @@ def triangles_of(instance):
 def shapes_of(scene):
     """The primitives in world space by kind."""
     return {part.kind: part for _, part in scene.shapes.kinds()}
+
+
+class GeometryNodes:
+    """A tree of geometry nodes; what is joined to `output` leaves it."""
+
+    def __init__(self, name="nodes"):
+        self.tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
+        for direction in ("INPUT", "OUTPUT"):
+            self.tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+        self.own = self.tree.nodes.new("NodeGroupInput").outputs[0]
+        self._join = self.add("JoinGeometry")
+        self.tree.links.new(self._join, self.tree.nodes.new("NodeGroupOutput").inputs[0])
+
+    def add(self, kind, output=0, **inputs):
+        """An output of a new node of the type GeometryNode<kind>; its inputs by name get values, or sockets to link."""
+        made = self.tree.nodes.new(kind if kind.startswith("FunctionNode") else f"GeometryNode{kind}")
+        for name, value in inputs.items():
+            socket = made.inputs[name.replace("_", " ")]
+            if isinstance(value, bpy.types.NodeSocket):
+                self.tree.links.new(value, socket)
+            else:
+                socket.default_value = value
+        return made.outputs[output]
+
+    def object(self, obj):
+        """An object, as an instance."""
+        return self.add("ObjectInfo", "Geometry", Object=obj, As_Instance=True)
+
+    def output(self, *sockets):
+        """Let geometry out; the tree."""
+        for socket in sockets:
+            self.tree.links.new(socket, self._join.node.inputs[0])
+        return self.tree
+
+    def named(self, name, data_type="FLOAT"):
+        """The values of a named attribute."""
+        made = self.tree.nodes.new("GeometryNodeInputNamedAttribute")
+        made.data_type = data_type
+        made.inputs["Name"].default_value = name
+        return next(socket for socket in made.outputs if socket.enabled)
+
+    def stored(self, geometry, name, value, data_type="FLOAT", domain="POINT"):
+        """Geometry with a named attribute, `value` a number or a socket."""
+        made = self.tree.nodes.new("GeometryNodeStoreNamedAttribute")
+        made.data_type, made.domain = data_type, domain
+        self.tree.links.new(geometry, made.inputs["Geometry"])
+        made.inputs["Name"].default_value = name
+        socket = next(s for s in made.inputs if s.name == "Value" and s.enabled)
+        if isinstance(value, bpy.types.NodeSocket):
+            self.tree.links.new(value, socket)
+        else:
+            socket.default_value = value
+        return made.outputs[0]
+
+
+def with_nodes(nodes, name="host", data=None, **settings):
+    """An object with the tree of `GeometryNodes` as its modifier."""
+    obj = link(data or bpy.data.meshes.new(name), name, **settings)
+    obj.modifiers.new("nodes", "NODES").node_group = nodes.tree
+    return obj

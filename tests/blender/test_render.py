@@ -1,9 +1,11 @@
 """F12: the whole way from Blender's scene to the written picture, through the RenderEngine."""
 
+import gc
 import os
 import subprocess
 import sys
 import time
+import weakref
 from pathlib import Path
 
 import bpy
@@ -300,6 +302,26 @@ def test_a_glass_ball_behind_a_pane_of_the_same_glass_is_seen(scene, tmp_path):
 def test_empty_scene_is_sky(scene, tmp_path):
     bpy.data.objects.remove(bpy.data.objects["Sphere"])
     np.testing.assert_allclose(rendered(scene, tmp_path)[..., :3], np.broadcast_to(SKY, (HEIGHT, WIDTH, 3)), rtol=1e-6)
+
+
+def test_nothing_of_the_scene_is_kept_while_it_is_drawn(scene, monkeypatch):
+    synced, alive = [], []
+
+    def watched(*arguments, **settings):
+        found = sync_scene(*arguments, **settings)
+        synced.extend(weakref.ref(kept) for kept in (found, found.shapes))
+        return found
+
+    def draw(self, *arguments):
+        gc.collect()
+        alive.extend(kept() for kept in synced)
+        plain_draw(self, *arguments)
+
+    sync_scene, plain_draw = render_session.sync_scene, render_session.LayerRender.draw
+    monkeypatch.setattr(render_session, "sync_scene", watched)
+    monkeypatch.setattr(render_session.LayerRender, "draw", draw)
+    bpy.ops.render.render()
+    assert alive == [None, None]
 
 
 def test_progress_and_partial_results(scene, monkeypatch, watch):

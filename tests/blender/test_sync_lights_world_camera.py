@@ -92,10 +92,33 @@ def test_soft_lights_are_named_in_one_message():
     add_camera()
     for name in "abc":
         data = bpy.data.lights.new(name, "POINT")
-        data.shadow_soft_size = 0.25
+        data.shadow_soft_size = 0.5
         link(data, name)
     messages = sync().messages
-    assert len(messages) == 1 and messages[0][0] == "INFO" and "'a' and 2 more: their size" in messages[0][1]
+    assert len(messages) == 1 and messages[0][0] == "INFO" and "'a' and 2 more: the size" in messages[0][1]
+
+
+@pytest.mark.parametrize("change", ({"shadow_soft_size": 0.1}, {"use_shadow": False}, {"energy": 0.0}))
+def test_a_size_that_is_not_seen_is_not_told(change):
+    """Ten meters away: a light of 20 cm, one without shadows, one that is dark."""
+    add_camera()
+    data = bpy.data.lights.new("lamp", "POINT")
+    data.shadow_soft_size = 0.5
+    for name, value in change.items():
+        setattr(data, name, value)
+    link(data, "lamp")
+    assert not sync().messages
+
+
+@pytest.mark.parametrize("kind", ("SPOT", "AREA"))
+def test_lights_drawn_as_points_are_named_in_one_message(kind):
+    add_camera()
+    for name in "abc":
+        data = bpy.data.lights.new(name, kind)
+        if kind == "SPOT":
+            data.shadow_soft_size = 0.0
+        link(data, name)
+    assert len(sync().warnings("light 'a' and 2 more", kind.lower(), "bright all around")) == 1
 
 
 @pytest.mark.parametrize("kind", ["POINT", "SUN", "SPOT", "AREA"])

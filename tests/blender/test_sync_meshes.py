@@ -7,6 +7,7 @@ from mathutils import Euler, Matrix
 
 from addon.engine.errors import SceneError
 from addon.engine.packing import pack
+from addon.engine.primitives import invertible
 from tests.blender.building import add_camera, image, link, material, mesh_of, node, quad, sync, triangles_of
 
 
@@ -18,7 +19,7 @@ def test_quad():
     assert len(triangles) == 2
     area = np.linalg.norm(np.cross(triangles.p1 - triangles.p0, triangles.p2 - triangles.p0), axis=1).sum() / 2.0
     assert area == pytest.approx(1.0)
-    np.testing.assert_allclose(instance.matrix @ (1, 1, 0, 1), (3.0, 3.0, 3.0, 1.0))
+    np.testing.assert_allclose(instance.matrices[0] @ (1, 1, 0, 1), (3.0, 3.0, 3.0, 1.0))
     assert instance.name == "quad"
 
 
@@ -170,8 +171,8 @@ def test_objects_that_share_a_mesh_share_its_geometry_unless_modified():
         link(first.data, f"copy {i}", location=(i, 0, 0))
     link(first.data, "thick").modifiers.new("solid", "SOLIDIFY")
     scene = sync().scene
-    assert len(scene.instances) == 5
-    assert len({id(instance.geometry) for instance in scene.instances}) == 2
+    assert sorted(len(instances) for instances in scene.instances) == [1, 4]
+    assert len({id(instances.geometry) for instances in scene.instances}) == 2
 
 
 def test_collection_instances_share_geometry_and_stand_where_they_are_put():
@@ -181,9 +182,8 @@ def test_collection_instances_share_geometry_and_stand_where_they_are_put():
     bpy.data.objects.remove(bpy.data.objects["quad"])
     for x in (1.0, 2.0):
         link(None, f"place {x}", location=(x, 0, 0), instance_type="COLLECTION", instance_collection=collection)
-    first, second = sync().scene.instances
-    assert first.geometry is second.geometry
-    assert sorted((first.matrix[0, 3], second.matrix[0, 3])) == [1.0, 2.0]
+    (instances,) = sync().scene.instances
+    assert sorted(instances.matrices[:, 0, 3]) == [1.0, 2.0]
 
 
 @pytest.mark.parametrize("add", ("text", "metaball", "curve", "surface"))
@@ -225,7 +225,7 @@ def test_a_mesh_of_nan_alone_leaves_the_rest_right():
     assert synced.warnings("broken", "NaN")
 
 
-@pytest.mark.parametrize("scale", ((0.0, 0.0, 0.0), (1.0, 1.0, 0.0)))
+@pytest.mark.parametrize("scale", ((0.0, 0.0, 0.0), (0.0, 1.0, 0.0)))
 def test_zero_scale_is_named_and_leaves_the_rest_right(scale):
     add_camera()
     quad("flat", scale=scale)
@@ -236,6 +236,25 @@ def test_zero_scale_is_named_and_leaves_the_rest_right(scale):
     assert [instance.name for instance in synced.scene.instances] == ["quad"]
     assert not len(synced.scene.shapes)
     assert synced.warnings("'flat'", "scaled to zero") and synced.warnings("'Sphere'", "scaled to zero")
+
+
+def test_what_is_flattened_along_one_axis_is_drawn_flat():
+    add_camera()
+    bpy.ops.mesh.primitive_cube_add(rotation=(0.3, 0.4, 0.5))
+    bpy.context.object.scale = (1.0, 0.0, 2.0)
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    bpy.context.object.scale = (1.0, 1.0, 0.0)
+    bpy.context.object.rotation_euler = (0.3, 0.4, 0.5)
+    synced = sync()
+    assert not synced.messages
+    by_kind = {part.kind: i for i in synced.scene.instances for _, part in i.geometry.kinds()}
+    assert set(by_kind) == {"triangle", "sphere"}
+    for instances, sizes in ((by_kind["triangle"], (2.0, 1.0)), (by_kind["sphere"], (1.0, 1.0))):
+        assert invertible(instances.matrices).all()
+        scales = np.linalg.svd(instances.matrices[0, :3, :3])[1]
+        np.testing.assert_allclose(scales[:2], sizes, rtol=1e-4)
+        assert scales[2] < 1e-3
+    pack(synced.scene, 1 << 12)
 
 
 def test_a_matrix_that_is_not_finite_is_named_as_such():
@@ -327,13 +346,3 @@ def test_unknown_geometry_is_named():
     add_camera()
     link(bpy.data.volumes.new("smoke"), "cloud")
     assert len(sync().warnings("'cloud'", "volume")) == 1
-
-
-def test_flags_that_are_not_rendered_are_named():
-    add_camera()
-    quad("a", is_holdout=True)
-    quad("b", visible_shadow=False)
-    quad("c", is_shadow_catcher=True)
-    synced = sync()
-    assert synced.warnings("'a'", "holdout") and synced.warnings("'b'", "visibility")
-    assert synced.warnings("'c'", "shadow catcher") and len(synced.messages) == 3

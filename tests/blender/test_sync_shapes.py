@@ -65,7 +65,7 @@ def test_stretched_sphere_is_an_instance_of_a_sphere():
     (instance,) = scene.instances
     ((_, sphere),) = instance.geometry.kinds()
     assert sphere.kind == "sphere"
-    poles = np.linalg.norm(instance.matrix[:3, :3] * sphere.radius[0], axis=0)
+    poles = np.linalg.norm(instance.matrices[0, :3, :3] * sphere.radius[0], axis=0)
     np.testing.assert_allclose(sorted(poles), (1.0, 2.0, 3.0), rtol=1e-5)
 
 
@@ -73,8 +73,8 @@ def test_mirrored_sphere_keeps_its_place():
     add_camera()
     add("SPHERE", Matrix.Translation((1, 2, 3)) @ Matrix.Diagonal((-1.0, 1.0, 1.0, 1.0)))
     (instance,) = sync().scene.instances
-    assert np.linalg.det(instance.matrix[:3, :3]) < 0.0
-    np.testing.assert_allclose(instance.matrix[:3, 3], (1.0, 2.0, 3.0))
+    assert np.linalg.det(instance.matrices[0, :3, :3]) < 0.0
+    np.testing.assert_allclose(instance.matrices[0, :3, 3], (1.0, 2.0, 3.0))
 
 
 def test_many_copies_of_one_mesh():
@@ -133,7 +133,7 @@ def test_chosen_sphere_fills_the_bounding_box():
         vertex.co = vertex.co * Vector((1, 2, 3)) + Vector((5, 0, 0))
     obj.conic.primitive = "SPHERE"
     (instance,) = sync().scene.instances
-    np.testing.assert_allclose(instance.matrix[:3], [[1, 0, 0, 5], [0, 2, 0, 0], [0, 0, 3, 0]], atol=1e-6)
+    np.testing.assert_allclose(instance.matrices[0, :3], [[1, 0, 0, 5], [0, 2, 0, 0], [0, 0, 3, 0]], atol=1e-6)
     assert described(obj)[0] == "SPHERE" and "bounding box" in described(obj)[1]
 
 

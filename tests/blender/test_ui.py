@@ -5,7 +5,10 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
-from addon.ui import light, object_shape, render_settings, standard_panels
+from addon import statistics
+from addon.ui import light, material, object_shape, object_visibility, render_settings, standard_panels
+from addon.ui import statistics as statistics_panel
+from tests.blender.building import link
 
 RENDER_PANELS = [panel for name, panel in vars(render_settings).items() if name.startswith("CONIC_")]
 
@@ -16,6 +19,9 @@ DEFAULTS = {
     "weight_cutoff": 1 / 512,
     "shadows": "TINTED",
     "recognise": "ALWAYS",
+    "curve_sampling": "PIXELS",
+    "curve_tolerance": 0.25,
+    "curve_steps": 8,
 }
 
 
@@ -25,17 +31,21 @@ class Layout:
     def __init__(self):
         self.shown, self.text = [], []
 
-    def prop(self, data, name, text=None, expand=False):
+    def prop(self, data, name, text=None, expand=False, invert_checkbox=False, toggle=-1):
         assert name in data.bl_rna.properties, f"{data} has no {name}"
         self.shown.append(name)
 
     def label(self, text, icon="NONE"):
+        assert isinstance(text, str)
         self.text.append(text)
 
-    def row(self, align=False):
+    def row(self, align=False, heading="", factor=0.0):
         return self
 
-    column = row
+    column = split = row
+
+    def separator(self):
+        pass
 
 
 def draw(panel, **context):
@@ -108,7 +118,10 @@ def test_render_panels_show_settings(panel):
 
 
 def test_render_panels_show_every_setting():
-    shown = {name for panel in RENDER_PANELS for name in draw(panel, scene=bpy.context.scene).shown}
+    shown = set()
+    for sampling in ("PIXELS", "FIXED"):
+        bpy.context.scene.conic.curve_sampling = sampling
+        shown |= {name for panel in RENDER_PANELS for name in draw(panel, scene=bpy.context.scene).shown}
     assert shown >= set(DEFAULTS) | {"film_transparent"}
 
 
@@ -141,6 +154,86 @@ def test_object_panel_says_what_it_was_taken_as_and_forgets_when_that_changes():
     assert "Mesh" in described().text[0]
 
 
+def edge():
+    mesh = bpy.data.meshes.new("edge")
+    mesh.from_pydata([(0, 0, 0), (1, 0, 0)], [(0, 1)], [])
+    return mesh
+
+
+def objects_that_rays_meet():
+    """An object of each kind, by name."""
+    bpy.ops.mesh.primitive_cube_add()
+    collection = bpy.data.collections.new("copied")
+    collection.objects.link(bpy.context.object)
+    empty = link(None, "instances", instance_type="COLLECTION", instance_collection=collection)
+    return {
+        "mesh": bpy.context.object,
+        "points": link(bpy.data.pointclouds.new("points"), "points"),
+        "hair": link(bpy.data.hair_curves.new("hair"), "hair"),
+        "curve": link(bpy.data.curves.new("curve", "CURVE"), "curve"),
+        "text": link(bpy.data.curves.new("text", "FONT"), "text"),
+        "instances": empty,
+        "edges": link(edge(), "edges"),
+    }
+
+
+@pytest.mark.parametrize(
+    "name, settings",
+    [
+        ("mesh", ["primitive"]),
+        ("points", []),
+        ("hair", []),
+        ("curve", ["primitive", "strand_radius"]),
+        ("text", ["primitive"]),
+        ("instances", []),
+        ("edges", ["primitive", "strand_radius"]),
+    ],
+)
+def test_object_panel_shows_the_settings_of_each_kind_of_object(name, settings):
+    bpy.context.view_layer.objects.active = objects_that_rays_meet()[name]
+    bpy.context.scene.render.engine = "CONIC"
+    assert object_shape.CONIC_OBJECT_PT_shape.poll(bpy.context)
+    drawn = described()
+    assert drawn.shown == settings
+    assert drawn.text[0].startswith("Rendered as: ") and len(drawn.text) > 1
+
+
+def test_nothing_that_rays_cannot_meet_has_a_panel_of_its_shape():
+    bpy.context.scene.render.engine = "CONIC"
+    for data in (None, bpy.data.lights.new("light", "POINT"), bpy.data.cameras.new("camera")):
+        bpy.context.view_layer.objects.active = link(data)
+        assert not object_shape.CONIC_OBJECT_PT_shape.poll(bpy.context)
+        assert not object_visibility.CONIC_OBJECT_PT_ray_visibility.poll(bpy.context)
+
+
+RAYS = {"visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow"}
+
+
+@pytest.mark.parametrize("name", ["mesh", "points", "hair", "instances"])
+def test_what_sees_an_object_can_be_set_with_blenders_panel_and_ours(name):
+    obj = bpy.context.view_layer.objects.active = objects_that_rays_meet()[name]
+    bpy.context.scene.render.engine = "CONIC"
+    blenders, own = bpy.types.OBJECT_PT_visibility, object_visibility.CONIC_OBJECT_PT_ray_visibility
+    assert blenders.poll(bpy.context) and own.poll(bpy.context) and own.bl_parent_id == blenders.__name__
+    assert set(draw(own, object=obj).shown) == RAYS | {"is_shadow_catcher"}
+    assert {"hide_render", "is_holdout"} <= set(draw(blenders, object=obj, engine="CONIC").shown)
+
+
+def test_material_panel_shows_backface_culling():
+    shown = draw(material.CONIC_MATERIAL_PT_settings, material=bpy.data.materials.new("any")).shown
+    assert shown == ["use_backface_culling", "use_backface_culling_shadow"]
+
+
+def test_statistics_panel_shows_the_newest_figures(monkeypatch):
+    panel = statistics_panel.CONIC_RENDER_PT_statistics
+    monkeypatch.setattr(statistics, "_latest", None)
+    assert draw(panel).text == ["Nothing rendered yet"]
+    statistics.publish(statistics.Statistics("Viewport", primitives={"sphere": 1234567}, seconds={"read": 1.23}))
+    text = [label.strip() for label in draw(panel).text]
+    assert text[0] == "Viewport"
+    assert text[text.index("Spheres") + 1] == "1,234,567" and text[text.index("Read") + 1] == "1.2 s"
+
+
 @pytest.mark.parametrize("engine, shown", [("CONIC", True), ("BLENDER_WORKBENCH", False)])
 def test_own_panels_are_there_for_conic_only(engine, shown):
     bpy.context.scene.render.engine = engine
@@ -165,6 +258,11 @@ def test_standard_panels_are_shown():
         "DATA_PT_context_light",
         "WORLD_PT_context_world",
         "MATERIAL_PT_custom_props",
+        "DATA_PT_context_pointcloud",
+        "DATA_PT_pointcloud_attributes",
+        "DATA_PT_context_curves",
+        "DATA_PT_CURVES_attributes",
+        "PARTICLE_PT_render",
     } <= shown
     assert not shown & standard_panels.REFUSED
     assert not [name for name in shown if "freestyle" in name.lower()]

@@ -1,5 +1,7 @@
 """The viewport's session, drawn into a frame buffer: Blender gives a GPU context outside of a render from 5.2 on."""
 
+import gc
+import weakref
 from types import SimpleNamespace
 
 import bpy
@@ -37,6 +39,7 @@ class View:
         gpu.init()
         self.engine = Engine()
         self.session = ViewportSession(self.engine)
+        self.space_data = None
         self.region = SimpleNamespace(width=WIDTH, height=HEIGHT)
         self.region_data = SimpleNamespace(view_matrix=np.eye(4), window_matrix=np.eye(4), is_perspective=False)
         self.look_from(0.0)
@@ -87,13 +90,13 @@ def view():
 def loads(monkeypatch):
     """A list with an entry for each load of a scene."""
     seen = []
-    load = viewport_session.Session.load
+    build = viewport_session.Session.build
 
     def counted(self, *arguments):
-        seen.append(arguments)
-        load(self, *arguments)
+        seen.append(True)
+        build(self, *arguments)
 
-    monkeypatch.setattr(viewport_session.Session, "load", counted)
+    monkeypatch.setattr(viewport_session.Session, "build", counted)
     return seen
 
 
@@ -129,6 +132,69 @@ def test_a_change_is_shown_and_selecting_is_none(view, loads):
     assert view.redraw()
     assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 + WIDTH / 6, abs=0.5)
     assert len(loads) == 2
+
+
+@pytest.fixture
+def space():
+    """The 3D viewport of the factory window, and what an operator in it needs."""
+    screen = bpy.context.window_manager.windows[0].screen
+    area = next(area for area in screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region):
+        yield area.spaces.active
+
+
+def test_types_that_a_viewport_hides_are_not_drawn_without_an_update(view, loads, space):
+    view.space_data = space
+    assert sphere_at(view.settle())[1] > 0
+    space.show_object_viewport_mesh = False
+    assert view.redraw(), "though nothing marks the session"
+    assert not (view.settle()[..., 0] < 0.5).any()
+    space.show_object_viewport_mesh = True
+    assert sphere_at(view.settle())[1] > 0
+    assert len(loads) == 3
+
+
+def test_local_view_shows_its_objects_without_an_update(view, space):
+    view.space_data = space
+    bpy.ops.conic.sphere_add(location=(2.0, 0.0, 0.0), radius=0.5)
+    both = sphere_at(view.settle())[1]
+    bpy.ops.view3d.localview()
+    column, area = sphere_at(view.settle())
+    assert area < 0.5 * both and column == pytest.approx(WIDTH / 2 + WIDTH / 3, abs=0.5)
+    bpy.ops.view3d.localview()
+    assert sphere_at(view.settle())[1] == both
+
+
+def test_statistics_are_published_once_for_what_is_loaded(view, monkeypatch):
+    published = []
+    monkeypatch.setattr(viewport_session, "publish", published.append)
+    view.settle()
+    view.look_from(1.0)
+    view.settle()
+    (found,) = published
+    assert (found.source, found.width, found.height, found.samples) == ("Viewport", WIDTH, HEIGHT, 2)
+    assert found.primitives == {"sphere": 1} and found.objects == {"sphere": 1}
+    assert found.seconds["read"] < found.seconds["first_picture"]
+    bpy.context.object.location.x = 1.0
+    view.session.mark()
+    view.settle()
+    assert len(published) == 2
+
+
+def test_nothing_of_the_scene_is_kept_once_it_is_loaded(view, monkeypatch):
+    scenes = []
+
+    def watched(*arguments, **settings):
+        scene = sync_scene(*arguments, **settings)
+        scenes.extend(weakref.ref(kept) for kept in (scene, scene.shapes))
+        return scene
+
+    sync_scene = viewport_session.sync_scene
+    monkeypatch.setattr(viewport_session, "sync_scene", watched)
+    view.settle()
+    gc.collect()
+    assert scenes and not any(scene() for scene in scenes)
 
 
 @pytest.mark.parametrize("name, value", [("preview_samples", 3), ("max_depth", 2), ("shadows", "OPAQUE")])

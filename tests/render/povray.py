@@ -77,7 +77,8 @@ def scene_text(scene, settings):
         *(_planes(planes) for planes in scene.planes),
     ]
     for instance in scene.instances:
-        parts += _geometry(instance.geometry, instance.materials, instance.matrix)
+        for matrix in instance.matrices:
+            parts += _geometry(instance.geometry, instance.materials, matrix)
     return "\n".join(parts) + "\n"
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from addon.engine import Camera, Geometry, Image, Instance, Light, Material, Scene, Spheres, Triangles, World
+from addon.engine import Camera, Geometry, Image, Instances, Light, Material, Scene, Spheres, Triangles, World
 
 
 def still_life(eye=(3.0, -5.0, 2.6), aspect=4.0 / 3.0):
@@ -34,7 +34,7 @@ def still_life(eye=(3.0, -5.0, 2.6), aspect=4.0 / 3.0):
     scene.add_triangles((0.3, 0.5, 1.9), (1.3, 0.7, 1.6), (0.4, 1.2, 1.5), yellow)
     roof = Geometry(Spheres(center=(0.0, 0.0, 0.0), radius=0.5), _saddle())
     matrix = np.array([[0.8, 0.3, 0.0, 0.5], [0.0, 0.6, 0.0, 0.3], [0.1, 0.0, 0.7, 0.35], [0.0, 0.0, 0.0, 1.0]])
-    scene.instances.append(Instance(roof, matrix, (red, yellow)))
+    scene.instances.append(Instances(roof, matrix, (red, yellow)))
     scene.add_light(Light.point((4.0, -4.0, 6.0), 1500.0))
     scene.add_light(Light.constant((-6.0, -3.0, 4.0), (0.25, 0.25, 0.3)))
     scene.add_light(Light.sun((0.0, -1.0, 3.0), 0.6))

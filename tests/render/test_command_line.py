@@ -134,7 +134,7 @@ def test_stats(conic, folder):
     assert stats["rays"]["shadow"] <= stats["rays"]["eye_hit"]
     assert stats["primitives"] == {"sphere": 1}
     assert stats["bvh"].keys() >= {"nodes", "depth", "sah_cost"}
-    assert list(stats["seconds"]) == ["read", "build", "upload", "compile", "trace"]
+    assert list(stats["seconds"]) == ["read", "build", "upload", "compile", "trace", "first_picture"]
     assert all(seconds >= 0.0 for seconds in stats["seconds"].values())
     assert stats["gpu_bytes"] > 0
     assert isinstance(stats["device"], str)

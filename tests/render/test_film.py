@@ -8,7 +8,7 @@ import pytest
 from addon.engine import (
     Camera,
     Geometry,
-    Instance,
+    Instances,
     Light,
     LightKind,
     Material,
@@ -19,7 +19,7 @@ from addon.engine import (
     World,
     render,
 )
-from addon.engine.primitives.base import Similarity
+from addon.engine.primitives import Similarity
 
 from .compare import psnr, save_difference
 from .scenes import still_life
@@ -42,7 +42,7 @@ def moved(scene, scale, offset):
         materials=[replace(m, absorption=np.divide(m.absorption, scale)) for m in scene.materials],
         shapes=Geometry(*(part.transformed(similarity) for _, part in scene.shapes.kinds())),
         planes=[part.transformed(similarity) for part in scene.planes],
-        instances=[replace(i, matrix=matrix @ i.matrix) for i in scene.instances],
+        instances=[replace(i, matrices=matrix @ i.matrices) for i in scene.instances],
     )
     return new
 
@@ -99,7 +99,7 @@ def stretched_floor(scene, half):
     """A unit square below its origin, stretched and lifted."""
     matrix = np.diag([half, half, 3.0, 1.0])
     matrix[2, 3] = 0.75
-    scene.instances.append(Instance(Geometry(square(1.0, -0.25)), matrix))
+    scene.instances.append(Instances(Geometry(square(1.0, -0.25)), matrix))
 
 
 @pytest.mark.parametrize("half", [10.0, 1e3, 1e4])

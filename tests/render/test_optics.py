@@ -9,7 +9,7 @@ from addon.engine import (
     Camera,
     Geometry,
     Image,
-    Instance,
+    Instances,
     Light,
     Material,
     Scene,
@@ -69,7 +69,7 @@ def solids(scene, materials=(0, 0, 0, 0)):
     scene.add_cones((-0.8, 0.0, -0.9), (-0.7, 0.1, -0.1), 0.4, 0.1, materials[1])
     scene.add(cube(materials[2], (0.35, -0.3, -0.9), 0.6))
     matrix = np.array([[0.5, 0.2, 0.0, 0.7], [0.0, 0.4, 0.1, 0.0], [0.0, 0.0, 0.45, 0.4], [0.0, 0.0, 0.0, 1.0]])
-    scene.instances.append(Instance(Geometry(Spheres(center=(0.0, 0.0, 0.0), radius=1.0)), matrix, (materials[3],)))
+    scene.instances.append(Instances(Geometry(Spheres(center=(0.0, 0.0, 0.0), radius=1.0)), matrix, (materials[3],)))
 
 
 def test_no_solid_makes_energy(device):
@@ -220,7 +220,8 @@ def test_absorption_is_as_long_as_the_body(device, number):
 def first_hit(scene, origin, direction):
     """Distance to the first surface by the float64 reference of each kind."""
     nearest = np.inf
-    for matrix, geometry in [(np.eye(4), scene.shapes), *((i.matrix, i.geometry) for i in scene.instances)]:
+    placed = [(matrix, block.geometry) for block in scene.instances for matrix in block.matrices]
+    for matrix, geometry in [(np.eye(4), scene.shapes), *placed]:
         inverse = np.linalg.inv(matrix)
         o, d = inverse[:3, :3] @ origin + inverse[:3, 3], inverse[:3, :3] @ direction
         scale = np.linalg.norm(d)
@@ -282,7 +283,7 @@ def test_a_body_of_several_materials(device):
     turn = np.array([[0.8, -0.6, 0.0, 0.0], [0.48, 0.64, 0.6, 0.0], [-0.36, -0.48, 0.8, 0.0], [0.0, 0.0, 0.0, 1.0]])
     pictures = []
     for slots in ((0,), (0, 1, 2)):
-        body = Instance(Geometry(cube(np.arange(12) % len(slots))), turn, slots)
+        body = Instances(Geometry(cube(np.arange(12) % len(slots))), turn, slots)
         scene = Scene(camera=side_view()[0], materials=[GLASS] * 3, instances=[body])
         sky = scene.add_image(Image(np.repeat(checks[..., None], 3, axis=-1)))
         scene.world = World((1.0, 1.0, 1.0), sky)

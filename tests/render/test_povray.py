@@ -10,7 +10,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine import Camera, Geometry, Instance, Light, Material, Scene, Settings, Spheres, Triangles, World, render
+from addon.engine import (
+    Camera,
+    Geometry,
+    Instances,
+    Light,
+    Material,
+    Scene,
+    Settings,
+    Spheres,
+    Triangles,
+    World,
+    render,
+)
 
 from . import povray
 from .compare import psnr, save_difference, silhouette_distance
@@ -113,7 +125,7 @@ def sphere(scene):
 
 def ellipsoid(scene):
     """A sphere that is sheared and stretched: an instance."""
-    scene.instances.append(Instance(Geometry(Spheres(center=(0.0, 0.0, 0.0), radius=1.0)), SHEAR))
+    scene.instances.append(Instances(Geometry(Spheres(center=(0.0, 0.0, 0.0), radius=1.0)), SHEAR))
 
 
 def disc(scene):
@@ -150,7 +162,7 @@ def solids_in_instances(scene):
     inner = Scene()
     inner.add_cones((-0.9, 0.0, -0.6), (-0.9, 0.0, 0.7), 0.8, 0.3)
     inner.add_cylinders((0.7, -0.2, -0.7), (0.9, 0.2, 0.6), 0.5)
-    scene.instances.append(Instance(inner.shapes, SHEAR))
+    scene.instances.append(Instances(inner.shapes, SHEAR))
 
 
 ALONE = (
@@ -225,7 +237,7 @@ def glass_cube(scene):
 
 def glass_ellipsoid(scene):
     geometry = Geometry(Spheres(center=(0.0, 0.0, 0.2), radius=1.0))
-    scene.instances.append(Instance(geometry, SHEAR, (3,)))
+    scene.instances.append(Instances(geometry, SHEAR, (3,)))
 
 
 BODIES = (glass_sphere, glass_cylinder, glass_cone, glass_cube, glass_ellipsoid)
@@ -298,7 +310,7 @@ def everything():
     scene.add_discs((1.5, -1.9, 0.3), (0.3, -0.3, 1.0), 0.4, 7)
     scene.add_triangles((0.4, 0.3, 1.9), (1.2, 0.9, 1.5), (0.2, 1.3, 1.7), material=5)
     inner = Geometry(Spheres(center=(0.0, 0.0, 0.0), radius=0.5), Triangles(**cube((0.0, 0.0, 0.9), 0.3), material=1))
-    scene.instances.append(Instance(inner, SHEAR @ np.diag([0.7, 0.7, 0.7, 1.0]), (5, 7)))
+    scene.instances.append(Instances(inner, SHEAR @ np.diag([0.7, 0.7, 0.7, 1.0]), (5, 7)))
     return scene
 
 

@@ -7,7 +7,7 @@ from addon.engine import (
     Camera,
     Geometry,
     Image,
-    Instance,
+    Instances,
     Light,
     Material,
     Scene,
@@ -76,7 +76,7 @@ def gallery():
     at(corner, (0.2, 1.4, 0.0), (0.1, 0.0, -1.0), (0.2 * 0.1 + 0.1 * 0.9 + 0.7 * 0.3, 0.3 * 0.2 + 0.7 * 0.8))
     matrix = np.diag([2.0, 1.0, 0.5, 1.0])
     matrix[:3, 3] = egg
-    scene.instances.append(Instance(Geometry(Spheres(center=(0.0, 0.0, 0.0), radius=1.0)), matrix))
+    scene.instances.append(Instances(Geometry(Spheres(center=(0.0, 0.0, 0.0), radius=1.0)), matrix))
     at(
         egg,
         polar(60.0, 30.0) * (2.0, 1.0, 0.5),
@@ -132,6 +132,27 @@ def test_each_colour_may_come_from_an_image(device, share):
     scene.materials = [Material(**colors, **images | {f"{share}_image": 1}, fresnel=False, ior=1.0)]
     expected = sum(colors.values()) - 0.5 * colors[share]
     assert along(device, scene, *ray, SETTINGS) == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize("share", ["diffuse", "reflect", "transmit", "glow"])
+def test_each_colour_may_come_from_an_attribute(device, share):
+    """It multiplies the colour that names it, and its image; where nothing has the attribute the colour is black."""
+    colors = {"diffuse": 0.2, "reflect": 0.3, "transmit": 0.1, "glow": 0.05}
+    tint = np.array((0.5, 0.25, 2.0))
+    for attributes, image, factor in (
+        ({"tint": (*tint, 1.0)}, -1, tint),
+        ({"tint": (*tint, 1.0)}, 0, 0.5 * tint),
+        ({}, -1, 0.0 * tint),
+    ):
+        scene = Scene(world=World((1.0, 1.0, 1.0)))
+        scene.add_image(Image(np.full((1, 1, 3), 0.5)))
+        named = {f"{share}_attribute": "tint", f"{share}_image": image}
+        scene.materials = [Material(**colors, **named, fresnel=False, ior=1.0)]
+        scene.add_discs((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 1.0, attributes=attributes)
+        scene.add_light(Light.sun((0.0, 0.0, 1.0), np.pi))
+        expected = sum(colors.values()) + (factor - 1.0) * colors[share]
+        color = along(device, scene, (0.3, 0.3, 1.0), (0.0, 0.0, -1.0), SETTINGS)
+        assert color == pytest.approx(expected, abs=1e-6), (attributes, image)
 
 
 def test_sky_in_a_mirror(device):

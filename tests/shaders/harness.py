@@ -11,6 +11,7 @@ import numpy as np
 
 from addon.engine import layout, shader_source
 from addon.engine.layout import Field, Record
+from addon.engine.scene import Visibility
 
 FOLDERS = (Path(__file__).resolve().parent / "glsl", shader_source.SHADER_FOLDER)
 
@@ -25,9 +26,9 @@ TEST_RAY = Record(
         Field("origin", "vec3", ""),
         Field("t_max", "float", ""),
         Field("direction", "vec3", "unit"),
-        Field("unused_1", "float", ""),
+        Field("kind", "int", "one of the bits of Visibility"),
         Field("next", "vec3", "unit"),
-        Field("unused_2", "float", ""),
+        Field("unused", "float", ""),
     ),
 )
 #: Whatever a function takes, as eight numbers.
@@ -104,9 +105,10 @@ class Hits:
     t_next: np.ndarray  # (n,) that ray's t on the same primitive, inf for a miss
 
 
-def ray_records(origin, direction, t_max=1e30, following=None):
+def ray_records(origin, direction, t_max=1e30, following=None, kind=Visibility.CAMERA):
     """TEST_RAY records (n,) of rays, and of the directions that the next rays leave in."""
     rays = TEST_RAY.zeros(len(origin))
+    rays["kind"] = int(kind)
     rays["origin"], rays["direction"], rays["t_max"] = origin, direction, t_max
     rays["next"] = direction if following is None else following
     return rays

@@ -3,7 +3,7 @@
 import numpy as np
 
 from addon.engine.primitives import Planes
-from addon.engine.scene import Camera, Geometry, Instance, Material, Scene
+from addon.engine.scene import Camera, Geometry, Instances, Material, Scene
 
 from . import shapes
 
@@ -135,7 +135,7 @@ def mixed(rng, count, instances=0):
     for i in range(instances):
         first = new_materials(scene, start)
         matrix = random_affine(rng)
-        scene.instances.append(Instance(geometry, matrix, tuple(range(first, first + start)), f"instance {i}"))
+        scene.instances.append(Instances(geometry, matrix, tuple(range(first, first + start)), f"instance {i}"))
         for part in made:
             oracle.add(first + int(part.material[0]), part, matrix)
     return scene, oracle

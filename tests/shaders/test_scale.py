@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from addon.engine.primitives import Spheres, Triangles
-from addon.engine.scene import Camera, Geometry, Instance, Light, Material, Scene, World
+from addon.engine.scene import Camera, Geometry, Instances, Light, Material, Scene, World
 from addon.engine.session import render
 from addon.engine.settings import Settings
 
@@ -36,13 +36,13 @@ def everything(scale=1.0, offset=(0.0, 0.0, 0.0)):
     scene.add_plane(place(0, 0, 0), [[0, 0, 1.0]], 0, tile=scale)
     matrix = np.diag([0.3 * scale, 0.5 * scale, 0.2 * scale, 1.0])
     matrix[:3, 3] = place(1.0, -1.0, 0.2)[0]
-    scene.instances.append(Instance(Geometry(Spheres(center=[[0, 0, 0]], radius=[1.0])), matrix, (3,), "ellipsoid"))
+    scene.instances.append(Instances(Geometry(Spheres(center=[[0, 0, 0]], radius=[1.0])), matrix, (3,), "ellipsoid"))
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
     faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     mesh = Geometry(Triangles(**{f"p{i}": corners[faces[:, i]] for i in range(3)}))
     matrix = np.diag([0.7 * scale] * 3 + [1.0])
     matrix[:3, 3] = place(-0.9, -1.6, 0.0)[0]
-    scene.instances.append(Instance(mesh, matrix, (0,), "mesh"))
+    scene.instances.append(Instances(mesh, matrix, (0,), "mesh"))
     return scene
 
 

@@ -144,3 +144,25 @@ def test_u_stays_below_one_at_the_seam(device):
     direction = np.stack([np.cos(angle), np.sin(angle), np.zeros(500)], axis=-1)
     hits = one(device, Spheres(center=[[0, 0, 0]], radius=[1.0]), 3.0 * direction, -direction)
     assert (hits.uv[:, 0] >= 0.0).all() and (hits.uv[:, 0] < 1.0).all()
+
+
+def test_one_uv_for_all_of_a_sphere(device):
+    """Where it is given; beside spheres without, and whatever the rotation of those."""
+    rng = np.random.default_rng(2)
+    n = 3000
+    fixed = rng.uniform(-3.0, 3.0, (n, 2)).astype(np.float32)
+    fixed[::3] = np.nan
+    spheres = Spheres(
+        center=np.zeros((n, 3)),
+        radius=np.ones(n),
+        pole=shapes.unit_vectors(rng, n),
+        meridian=shapes.unit_vectors(rng, n),
+        fixed_uv=fixed,
+    )
+    origin = shapes.single(5.0 * shapes.unit_vectors(rng, n))
+    hits = harness.hits(device, spheres, origin, shapes.single(shapes.normalized(-origin)))
+    has = np.isfinite(fixed[:, 0])
+    assert np.array_equal(hits.uv[has], fixed[has])
+    _, uv = spheres.take(~has).reference_surface(hits.position[~has].astype(np.float64))
+    away = np.abs(hits.uv[~has] - uv)
+    assert (np.minimum(away, np.abs(away - (1.0, 0.0))) < 1e-3).mean() > 0.99

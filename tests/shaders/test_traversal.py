@@ -8,7 +8,7 @@ import pytest
 from addon.engine import layout
 from addon.engine.packing import pack
 from addon.engine.primitives import Cylinders, Discs, Spheres, Triangles
-from addon.engine.scene import Geometry, Instance
+from addon.engine.scene import Geometry, Instances, Visibility
 
 from . import harness, scenes, shapes
 
@@ -29,14 +29,14 @@ class Traversed:
     spawned: np.ndarray
 
 
-def traverse(device, scene, origin, direction, t_max=1e30, following=None, packed=None):
+def traverse(device, scene, origin, direction, t_max=1e30, following=None, packed=None, kind=Visibility.CAMERA):
     packed = packed or pack(scene, device.max_texture_size)
     origin = origin - packed.origin
     hit, position, normal, spawned = harness.run(
         device,
         "traverse_frag.glsl",
         len(origin),
-        packed.textures | {"test_rays": harness.texels(harness.ray_records(origin, direction, t_max, following))},
+        packed.textures | {"test_rays": harness.texels(harness.ray_records(origin, direction, t_max, following, kind))},
         features=packed.features - {"HAS_IMAGES", "HAS_WORLD_IMAGE", "HAS_ABSORPTION"},
         constants=packed.constants,
         outputs=("out_hit", "out_position", "out_normal", "out_spawned"),
@@ -237,8 +237,8 @@ def test_a_closed_mesh_is_watertight(device, instanced, scale, seed):
     scene = scenes.empty_scene()
     scenes.new_materials(scene, 1)
     if instanced:
-        scene.instances.append(Instance(Geometry(mesh), scenes.random_affine(rng), (0,)))
-        matrix = scene.instances[0].matrix
+        scene.instances.append(Instances(Geometry(mesh), scenes.random_affine(rng), (0,)))
+        matrix = scene.instances[0].matrices[0]
     else:
         scene.add(mesh)
         matrix = np.eye(4)
@@ -283,7 +283,7 @@ def test_surfaces_of_instances(device, seed):
         matrix = scenes.random_affine(rng)
         scene = scenes.empty_scene()
         scenes.new_materials(scene, 1)
-        scene.instances.append(Instance(Geometry(Spheres(center=[[0.0, 0.0, 0.0]], radius=[1.0])), matrix, (0,)))
+        scene.instances.append(Instances(Geometry(Spheres(center=[[0.0, 0.0, 0.0]], radius=[1.0])), matrix, (0,)))
         origin, direction = random_rays(rng, 20_000)
         found = traverse(device, scene, origin, direction)
         hit = np.isfinite(found.t)

@@ -246,6 +246,19 @@ def test_clustering_takes_few_rounds(name):
     assert len(topology.left) == topology.batches[-1].stop and len(topology.batches) < 12 * np.log2(len(lo))
 
 
+def test_what_a_test_costs_may_differ_by_label():
+    """Labels whose tests are cheap have large leaves; those whose are dear, single primitives."""
+    rng = np.random.default_rng(8)
+    lo, label = rng.random((4000, 3)), rng.integers(0, 2, 4000)
+    lo[label == 1] += 10.0
+    bvh = build(lo, lo + 0.05, label, leaf_size=8, intersection_cost=np.array([0.1, 5.0]))
+    check(bvh, lo, lo + 0.05, label, leaf_size=8)
+    sizes = [bvh.count[bvh.is_leaf & (bvh.label == kind)].mean() for kind in (0, 1)]
+    assert sizes[0] > 3.0 and sizes[1] < 1.5
+    only = build(lo[label == 0], lo[label == 0] + 0.05, intersection_cost=0.1)
+    assert sah_cost(only, intersection_cost=np.array([0.1])) == pytest.approx(sah_cost(only, intersection_cost=0.1))
+
+
 @BUILDERS
 @pytest.mark.parametrize("axis", range(3))
 def test_points_on_an_axis_are_split_along_it(builder, axis):
@@ -269,7 +282,7 @@ def chain(n):
 @pytest.mark.parametrize("n", [62, 63, 64, 65, 100, 3000])
 def test_a_chain_is_cut_at_the_greatest_depth(n):
     lo = np.arange(3.0 * n, dtype=np.float32).reshape(n, 3)
-    bvh = flatten(chain(n), lo, lo, np.zeros(n, np.int32), 1, 1.0, 1.0)
+    bvh = flatten(chain(n), np.arange(n), lo, lo, np.zeros(n, np.int32), 1, 1.0, 1.0)
     check(bvh, lo, lo, leaf_size=1)
     assert bvh.depth == min(n - 1, MAX_DEPTH)
 
@@ -292,7 +305,7 @@ def test_quality_against_halving(scene):
     while len(nodes) > 1:
         span = np.maximum(span[:, ::2], span[:, 1::2])
         nodes = topology.add(nodes[::2], nodes[1::2], half_areas(span))
-    halved = flatten(topology, lo, hi, np.zeros(n, np.int32), 4, 1.0, 0.5)
+    halved = flatten(topology, np.arange(n), lo, hi, np.zeros(n, np.int32), 4, 1.0, 0.5)
     check(halved, lo, hi)
     assert sah_cost(sweep_build(lo, hi)) < 0.95 * sah_cost(halved)
 

@@ -63,3 +63,51 @@ def test_a_thing_that_holds_itself_ends():
 def test_sliced_arrays_count_by_content():
     numbers = np.arange(12).reshape(3, 4)
     assert fingerprint(numbers[:, ::2]) == fingerprint(numbers[:, ::2].copy())
+
+
+LARGE = 3 * 4096 * 64 + 1234  # words: some blocks, and a rest
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32, np.int32, np.uint8])
+def test_any_bit_of_a_large_array_counts(dtype):
+    rng = np.random.default_rng(7)
+    array = rng.integers(0, 200, LARGE).astype(dtype)
+    seen = {fingerprint(array)}
+    places = rng.integers(0, array.nbytes, 40)
+    for place in (0, array.nbytes - 1, *places):
+        changed = array.copy()
+        changed.view(np.uint8)[place] ^= 1 << rng.integers(0, 8)
+        seen.add(fingerprint(changed))
+    assert len(seen) == 43
+    assert fingerprint(array.copy()) in seen
+
+
+@pytest.mark.parametrize("count", [1, 2, 4096, 2 * 4096])
+def test_signs_of_a_large_array_count(count):
+    """Sums of words modulo 2^64 alone would not see an even number of changed top bits under odd weights."""
+    array = np.ones(LARGE)
+    changed = array.copy()
+    changed[:count] *= -1.0
+    assert fingerprint(array) != fingerprint(changed)
+    assert fingerprint(array) != fingerprint(2.0 * array)
+
+
+def test_the_order_of_a_large_array_counts():
+    array = np.arange(LARGE, dtype=np.float64)
+    assert fingerprint(array) != fingerprint(array[::-1])
+    swapped = np.concatenate([array[4096:8192], array[:4096], array[8192:]])
+    assert fingerprint(array) != fingerprint(swapped)
+
+
+def test_what_repeats_one_row_counts_by_that_row_and_takes_no_memory():
+    def repeated(row):
+        return np.broadcast_to(np.array(row, np.float64), (10**11, 3))
+
+    assert fingerprint(repeated([1.0, 2.0, 3.0])) == fingerprint(repeated([1.0, 2.0, 3.0]))
+    assert fingerprint(repeated([1.0, 2.0, 3.0])) != fingerprint(repeated([1.0, 2.0, 4.0]))
+    assert fingerprint(repeated([1.0, 2.0, 3.0])[: 10**10]) != fingerprint(repeated([1.0, 2.0, 3.0]))
+
+
+def test_arrays_without_elements_or_dimensions():
+    assert fingerprint(np.zeros((0, 3))) != fingerprint(np.zeros((0, 4)))
+    assert fingerprint(np.array(1.0)) != fingerprint(np.array(2.0))

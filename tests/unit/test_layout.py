@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from addon.engine import layout
+from addon.engine import layout, record_glsl
 from addon.engine.layout import Field, Record
 
 each_record = pytest.mark.parametrize("record", layout.RECORDS, ids=lambda record: record.name)
@@ -16,7 +16,7 @@ SIZES = {"float": 1, "int": 1, "vec2": 2, "vec3": 3, "vec4": 4}
 
 def glsl_reads(record, floats):
     """What `read_<record>` makes of the floats of one record: member name to a list of values."""
-    text = layout.glsl_reader(record)
+    text = record_glsl.reader(record)
     kinds = {name: kind for kind, name in re.findall(r"^  (\w+) (\w+);$", text.split("};")[0], re.MULTILINE)}
     read = {}
     for name, texel, swizzle in re.findall(r"record\.(\w+) = (?:int\()?t(\d+)\.([xyzw]+)", text):
@@ -42,7 +42,7 @@ def test_bytes_are_read_as_they_were_written(record):
 
 @each_record
 def test_records_are_fetched_from_their_own_place(record):
-    text = layout.glsl_reader(record)
+    text = record_glsl.reader(record)
     texels = [int(t) for t in re.findall(rf"fetch_{record.texture}\(texel \+ (\d+)\)", text)]
     assert texels == list(range(record.texels))
     assert f"index * {record.texels};" in text
@@ -54,9 +54,9 @@ def test_records_are_fetched_from_their_own_place(record):
 
 def test_the_frame_is_read_as_it_was_written():
     """The uniform block is groups of four floats, which every language lays out alike, and a name for each part."""
-    assert re.findall(r"  (\w+) group_\d+;", layout.glsl_uniform_struct()) == ["vec4"] * layout.FRAME.texels
+    assert re.findall(r"  (\w+) group_\d+;", record_glsl.uniform_struct()) == ["vec4"] * layout.FRAME.texels
     assert layout.FRAME.dtype.itemsize == 16 * layout.FRAME.texels
-    names = re.findall(r"#define frame_(\w+) \(frame\.group_(\d+)\.([xyzw]+)\)", layout.glsl_uniforms())
+    names = re.findall(r"#define frame_(\w+) \(frame\.group_(\d+)\.([xyzw]+)\)", record_glsl.uniforms())
     assert [name for name, _, _ in names] == list(layout.FRAME.dtype.names)
     for name, group, swizzle in names:
         kind, offset = layout.FRAME.dtype.fields[name][:2]
@@ -94,7 +94,7 @@ def test_leaves_survive_float32():
     )
     leaf = layout.pack_leaf(kind, count, high)
     assert leaf.max() < 2**24 and (leaf.astype(np.float32) == leaf).all()
-    text = layout.glsl_constants()
+    text = record_glsl.constants()
     for macro, expected in (("LEAF_KIND", kind), ("LEAF_COUNT", count), ("LEAF_HIGH", high)):
         body = re.search(rf"#define {macro}\(leaf\) (.*)", text).group(1)
         assert (eval(body, {"leaf": leaf}) == expected).all(), macro

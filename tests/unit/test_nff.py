@@ -12,7 +12,7 @@ from addon.engine import (
     Camera,
     Cones,
     Cylinders,
-    Instance,
+    Instances,
     Light,
     Material,
     Scene,
@@ -416,7 +416,7 @@ CANNOT = {
     "a light of kind SUN": lambda scene: scene.add_light(Light.sun((0, 0, 1), 1.0)),
     "infinite planes": lambda scene: scene.add_plane([(0, 0, 0)], [(0, 0, 1)]),
     "discs": lambda scene: scene.add_discs([(0, 0, 0)], [(0, 0, 1)], 1.0),
-    "instances": lambda scene: scene.instances.append(Instance(scene.shapes, np.eye(4))),
+    "instances": lambda scene: scene.instances.append(Instances(scene.shapes, np.eye(4))),
     "whose material is not in the scene": lambda scene: scene.add_spheres([(0, 0, 0)], 1.0, 1),
 }
 

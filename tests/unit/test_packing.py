@@ -8,8 +8,8 @@ import pytest
 from addon.engine import layout
 from addon.engine.errors import SceneError
 from addon.engine.packing import pack, scene_origin
-from addon.engine.primitives import Cylinders, Discs, Planes, Spheres, Triangles
-from addon.engine.scene import Camera, Geometry, Image, Instance, Light, Material, Scene, World
+from addon.engine.primitives import Cylinders, Planes, Spheres, Triangles
+from addon.engine.scene import Camera, Geometry, Image, Instances, Light, Material, Scene, World
 
 LIMIT = 16384
 
@@ -51,7 +51,8 @@ def leaves(packed):
                 if nodes[f"lower_{child}"][index][0] < 1e38:
                     todo.append(first)
             elif kind == "instance":
-                hit = instances.reshape(-1)[16 * first : 16 * first + 16]
+                floats = 4 * layout.INSTANCE.texels
+                hit = instances.reshape(-1)[floats * first : floats * (first + 1)]
                 root = int(hit.view(layout.INSTANCE.dtype)["root"][0])
                 if root not in seen and root not in todo:
                     todo.append(root)
@@ -67,7 +68,7 @@ def test_every_primitive_is_in_one_leaf():
         Geometry(spheres(70)),
     ]
     scene = scene_of(spheres(30))
-    scene.instances = [Instance(geometries[i], np.eye(4)) for i in (0, 1, 0)]
+    scene.instances = [Instances(geometries[i], np.eye(4)) for i in (0, 1, 0)]
     packed = pack(scene, LIMIT)
     covered = {"sphere": np.zeros(140, int), "cylinder": np.zeros(1, int)}
     for kind, first, count in leaves(packed):
@@ -115,7 +116,7 @@ def test_planes_only_and_nothing_at_all():
     packed = pack(scene_of(), LIMIT)
     assert packed.frame["root_count"] == 0 and not packed.features
     scene = scene_of()
-    scene.instances = [Instance(Geometry(name="empty"), np.eye(4))]
+    scene.instances = [Instances(Geometry(name="empty"), np.eye(4))]
     assert pack(scene, LIMIT).frame["root_count"] == 0
 
 
@@ -123,7 +124,7 @@ def test_features_are_those_that_the_scene_uses():
     scene = scene_of(spheres(3), world=World((1, 1, 1), 0), images=[Image(np.zeros((2, 2, 4)))])
     assert pack(scene, LIMIT).features == {"HAS_SPHERE", "HAS_WORLD_IMAGE"}
     scene.materials = [Material(diffuse_image=0, absorption=(0, 1, 0))]
-    scene.instances = [Instance(Geometry(Triangles(p0=[[0, 0, 0]], p1=[[1, 0, 0]], p2=[[0, 1, 0]])), np.eye(4))]
+    scene.instances = [Instances(Geometry(Triangles(p0=[[0, 0, 0]], p1=[[1, 0, 0]], p2=[[0, 1, 0]])), np.eye(4))]
     expected = {"HAS_SPHERE", "HAS_TRIANGLE", "HAS_WORLD_IMAGE", "HAS_IMAGES", "HAS_ABSORPTION", "HAS_INSTANCES"}
     assert pack(scene, LIMIT).features == expected
 
@@ -132,7 +133,7 @@ def test_instances_share_geometry_and_materials():
     geometry = Geometry(Spheres(center=np.zeros((2, 3)), radius=1.0, material=[0, 1]))
     scene = scene_of(materials=4)
     matrix = np.diag([1.0, 2.0, -3.0, 1.0])
-    scene.instances = [Instance(geometry, matrix, (2, 3)), Instance(geometry, np.eye(4), (2, 3))]
+    scene.instances = [Instances(geometry, matrix, (2, 3)), Instances(geometry, np.eye(4), (2, 3))]
     packed = pack(scene, LIMIT)
     assert len(records(packed, layout.SPHERE, 2)) == 2 and packed.textures["spheres"].shape[:2] == (1, 2)
     first = records(packed, layout.INSTANCE, 2)["first_material"]
@@ -176,7 +177,7 @@ def test_lights_planes_and_instances_move_with_the_origin():
     scene.lights = [Light.point(np.add(offset, [0, 0, 3.0]), 1.0), Light.sun((0, 0, 1), 1.0)]
     matrix = np.eye(4)
     matrix[:3, 3] = np.add(offset, [0, 2.0, 0])
-    scene.instances = [Instance(Geometry(spheres(1)), matrix)]
+    scene.instances = [Instances(Geometry(spheres(1)), matrix)]
     packed = pack(scene, LIMIT)
     light = records(packed, layout.LIGHT, 2)
     assert np.allclose(light["position"][0], np.add(offset, [0, 0, 3.0]) - packed.origin)
@@ -210,13 +211,6 @@ def test_a_camera_that_is_nowhere():
     refuse(scene, "the camera's window (-1, 1, 0, 0) has no width or no height")
 
 
-def test_too_many_for_a_texture_is_found_before_anything_is_uploaded():
-    message = "texels of nodes, a texture of this device holds 4096; render it in parts or with fewer primitives"
-    refuse(scene_of(spheres(5000)), message, limit=1)
-    disc = Discs(center=np.zeros((2500, 3)), normal=[[0, 0, 1]], radius=1.0)  # many to a leaf: few nodes
-    refuse(scene_of(disc), "the scene needs 5000 texels of discs", limit=1)
-
-
 def test_an_image_too_large_is_reduced_and_said_so():
     picture = np.random.default_rng(0).random((100, 63, 4)).astype(np.float32)
     scene = scene_of(images=[Image(picture, name="wood.png"), Image(np.ones((8, 8, 4)), name="small")])
@@ -240,14 +234,14 @@ ENDLESS = np.diag([1.0, np.inf, 1.0, 1.0])
 def test_an_instance_without_volume_is_named(matrix, world):
     scene = scene_of(*([spheres(3)] if world else []))
     geometry = Geometry(spheres(1))
-    scene.instances = [Instance(geometry, np.eye(4), name="good"), Instance(geometry, matrix, name="bad")]
+    scene.instances = [Instances(geometry, np.eye(4), name="good"), Instances(geometry, matrix, name="bad")]
     refuse(scene, "instance 'bad' has a scale of 0")
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1e9])
 def test_no_scale_is_too_small_or_large_for_an_instance(scale):
     scene = scene_of()
-    scene.instances = [Instance(Geometry(spheres(1)), np.diag([scale, scale, 2 * scale, 1.0]))]
+    scene.instances = [Instances(Geometry(spheres(1)), np.diag([scale, scale, 2 * scale, 1.0]))]
     assert pack(scene, LIMIT).frame["root_count"] == 1
 
 
@@ -257,7 +251,7 @@ def test_a_material_that_is_not_there(material):
         scene_of(Planes(point=[[0, 0, 0]], normal=[[0, 0, 1]], material=material), materials=2), "a plane uses material"
     )
     scene = scene_of(materials=2)
-    scene.instances = [Instance(Geometry(spheres(1)), np.eye(4), (material,), "pot")]
+    scene.instances = [Instances(Geometry(spheres(1)), np.eye(4), (material,), "pot")]
     refuse(scene, f"instance 'pot' uses material {material}, the scene has 2")
     if material >= 0:
         refuse(scene_of(spheres(2, material), materials=2), f"a sphere uses material {material}, the scene has 2")
@@ -267,15 +261,15 @@ def test_a_material_beyond_the_list_is_not_taken_for_an_instance_s_block():
     """Blocks of instances' materials follow the scene's own; a shape may not reach them."""
     two = Geometry(Spheres(center=np.zeros((2, 3)), radius=1.0, material=[0, 1]))
     scene = scene_of(spheres(1, material=2), materials=2)
-    scene.instances = [Instance(two, np.eye(4), (1, 0))]
+    scene.instances = [Instances(two, np.eye(4), (1, 0))]
     refuse(scene, "a sphere uses material 2, the scene has 2")
 
 
 def test_slots_without_material():
     scene = scene_of()
-    scene.instances = [Instance(Geometry(spheres(2, [0, 3])), np.eye(4), (0, 0), "pot")]
+    scene.instances = [Instances(Geometry(spheres(2, [0, 3])), np.eye(4), (0, 0), "pot")]
     refuse(scene, "instance 'pot' has 2 materials, its geometry uses slot 3")
-    scene.instances = [Instance(Geometry(spheres(1, -1), name="mesh"), np.eye(4))]
+    scene.instances = [Instances(Geometry(spheres(1, -1), name="mesh"), np.eye(4))]
     refuse(scene, "geometry 'mesh': a sphere uses material slot -1")
 
 

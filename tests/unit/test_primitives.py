@@ -15,7 +15,9 @@ from addon.engine.primitives import (
     Similarity,
     Spheres,
     Triangles,
+    invertible,
     keeps_shapes,
+    thickened,
 )
 
 ALL = {
@@ -123,6 +125,64 @@ def test_take_and_concatenate(kind):
 
 
 @each
+def test_one_value_stays_one(kind):
+    """No memory for what is the same in all rows, whatever is done with them."""
+    made = ALL[kind](4)
+    meridian = {"sphere": "pole", "triangle": "uv1"}.get(kind, "meridian")
+    move = Similarity(np.eye(3), 2.0, np.ones(3))
+    both = type(made).concatenate([made, made])
+    for rows in (made, made.take(np.array([2, 1])), made.take(slice(1, 3)), both, both.transformed(move)):
+        for name in (meridian, "material"):
+            assert getattr(rows, name).strides[0] == 0 and len(getattr(rows, name)) == len(rows), name
+    other = type(made).concatenate([made, made._with({"material": np.full(4, 3)})])
+    assert other.material.tolist() == [0] * 4 + [3] * 4
+
+
+@each
+def test_attributes_go_along_with_their_rows(kind):
+    made = ALL[kind](3)._with({"attributes": {}})
+    places = made.attribute_places
+    at_each = np.arange(3 * places * 4, dtype=np.float32).reshape(3, places, 4)
+    made.attributes = {"each": at_each, "all": np.broadcast_to(np.float32([[[1, 2, 3, 4]]]), (3, 1, 4))}
+    taken = made.take(np.array([2, 0])).transformed(Similarity(np.eye(3), 2.0, np.ones(3)))
+    assert (taken.attributes["each"] == at_each[[2, 0]]).all() and (taken.attributes["all"] == [1, 2, 3, 4]).all()
+    plain = ALL[kind](2)._with({"attributes": {"each": np.full((2, 1, 4), 9, np.float32)}})
+    both = type(made).concatenate([plain, made])
+    assert (both.attributes["each"][:2] == 9).all() and (both.attributes["each"][2:] == at_each).all()
+    assert both.attributes["all"][:, 0, 0].tolist() == [0, 0, 1, 1, 1], "0 where a part has none"
+
+
+@pytest.mark.parametrize(
+    ("value", "shape"),
+    [((1, 2, 3, 4), (2, 1, 4)), (np.ones((2, 4)), (2, 1, 4)), (np.ones((2, 3, 4)), (2, 3, 4))],
+)
+def test_shapes_of_attributes(value, shape):
+    corners = {f"p{i}": np.eye(3)[[i, i]] for i in range(3)}
+    made = Triangles(**corners, attributes={"color": value})
+    assert made.attributes["color"].shape == shape and made.attributes["color"].dtype == np.float32
+    assert Spheres(center=np.zeros((2, 3)), radius=1.0).attributes == {}
+
+
+@pytest.mark.parametrize("value", [1.0, np.ones(3), np.ones((3, 4)), np.ones((2, 2, 4)), np.ones((2, 3, 3))])
+def test_attributes_of_other_shapes_are_refused(value):
+    message = f"sphere: attribute 'color' has shape {np.shape(value)}, expected (2, 1, 4)"
+    with pytest.raises(SceneError, match=re.escape(message)):
+        Spheres(center=np.zeros((2, 3)), radius=1.0, attributes={"color": value})
+
+
+def test_the_uv_of_a_whole_sphere():
+    """It stands where the rotation would, told apart by a length that no rotation has."""
+    uv = [[0.25, 0.75], [np.nan, np.nan]]
+    made = Spheres(center=np.zeros((2, 3)), radius=1.0, pole=[[1.0, 0, 0]], fixed_uv=uv)
+    rotation = made.records()[1]["rotation"]
+    assert rotation[0].tolist() == [0.25, 0.75, 4.0] and np.linalg.norm(rotation[1]) <= 1.0 + 1e-6
+    assert (rotation[1] == made.take(np.array([1])).records()[1]["rotation"][0]).all()
+    assert (made.take(np.array([0])).records()[1]["rotation"] == rotation[0]).all(), "one for all, too"
+    found = made.reference_surface(np.float64([[0, 1, 0], [0, 1, 0]]))[1]
+    assert found[0].tolist() == [0.25, 0.75] and np.isfinite(found[1]).all()
+
+
+@each
 def test_a_similarity_moves_the_shape_and_its_hits(kind):
     """What a moved ray hits of a moved shape is the old hit, moved: t scales, uv stays."""
     rng = np.random.default_rng(0)
@@ -173,6 +233,33 @@ def test_a_float32_rotation_is_a_similarity():
             0.3
         )
         assert keeps_shapes(matrix_of(turn)[None]).all()
+
+
+def turned(seed):
+    rotation, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    return rotation
+
+
+@pytest.mark.parametrize("scales", [(1, 1, 0), (0, 2, 3), (5e-7, 0, 1e-6), (1e8, 0, 1e7), (1, 1, 1e-12)])
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_what_is_flattened_gets_a_thickness(scales, seed):
+    flat = matrix_of(turned(seed) @ np.diag(np.float64(scales)) @ turned(seed + 10))
+    flat[:3, 3] = [1, 2, 3]
+    assert not invertible(flat[None])[0]
+    thick = thickened(flat[None])[0]
+    assert invertible(thick[None])[0] and np.linalg.det(thick) > 0.0 and (thick[:, 3] == flat[:, 3]).all()
+    largest = max(scales)
+    got = np.linalg.svd(thick[:3, :3], compute_uv=False) / largest
+    assert np.allclose(np.sort(got), np.sort([1e-4, *(s / largest for s in sorted(scales)[1:])]), rtol=1e-6)
+    assert np.abs(thick - flat).max() <= 1.01e-4 * largest, "nothing else changes"
+
+
+def test_what_is_a_line_or_a_point_or_a_body_stays_as_it_is():
+    matrices = np.stack([matrix_of(np.diag(d)) for d in np.float64([[1, 0, 0], [0, 0, 0], [1, 2, 1e-9], [-1, 2, 3]])])
+    matrices = np.concatenate([matrices, np.full((1, 4, 4), np.nan), matrix_of(np.diag([1, np.inf, 0]))[None]])
+    assert np.array_equal(thickened(matrices), matrices, equal_nan=True)
+    assert invertible(matrices).tolist() == [False, False, True, True, False, False]
+    assert thickened(np.zeros((0, 4, 4))).shape == (0, 4, 4)
 
 
 def test_bounds_are_tight():

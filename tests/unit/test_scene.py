@@ -7,7 +7,7 @@ import pytest
 
 from addon.engine.errors import SceneError
 from addon.engine.primitives import Planes, Spheres
-from addon.engine.scene import Camera, Geometry, Image, Instance, Light, LightKind, Material, Scene, World
+from addon.engine.scene import Camera, Geometry, Image, Instances, Light, LightKind, Material, Scene, World
 
 
 def test_a_watt_is_blender_s():
@@ -100,7 +100,7 @@ def test_solid_cylinders_and_cones_have_caps_that_face_outwards():
 def test_counts_count_instances_each_time():
     scene = Scene()
     geometry = Geometry(Spheres(center=np.zeros((4, 3)), radius=1.0))
-    scene.instances += [Instance(geometry, np.eye(4))] * 3
+    scene.instances += [Instances(geometry, np.eye(4))] * 3
     scene.add_spheres([[0, 0, 0]], 1.0)
     scene.add_plane([[0, 0, 0]], [[0, 0, 1]])
     assert scene.primitive_counts() == {"sphere": 13, "plane": 1}

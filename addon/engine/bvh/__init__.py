@@ -1,9 +1,10 @@
 """Bounding volume hierarchies over boxes with labels: build, refit, measure. No primitive is known here."""
 
+from .boxes import rounded_outward
 from .build import build
 from .cost import sah_cost, statistics
 from .refit import refit
 from .sweep import sweep_build
 from .tree import FAR, MAX_DEPTH, Bvh
 
-__all__ = ["FAR", "MAX_DEPTH", "Bvh", "build", "refit", "sah_cost", "statistics", "sweep_build"]
+__all__ = ["FAR", "MAX_DEPTH", "Bvh", "build", "refit", "rounded_outward", "sah_cost", "statistics", "sweep_build"]

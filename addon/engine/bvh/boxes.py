@@ -25,8 +25,7 @@ def checked_boxes(lo: np.ndarray, hi: np.ndarray) -> tuple[np.ndarray, np.ndarra
         raise ValueError(f"boxes: lo and hi must both be of shape (n, 3), not {lo.shape} and {hi.shape}")
     _refuse(~(np.isfinite(lo) & np.isfinite(hi)), lo, hi, "not finite (NaN or infinite)")
     _refuse(lo > hi, lo, hi, "inverted (lo above hi)")
-    with np.errstate(over="ignore"):
-        low, high = _round_outward(lo, -np.inf), _round_outward(hi, np.inf)
+    low, high = rounded_outward(lo, hi)
     _refuse(~(np.isfinite(low) & np.isfinite(high)), lo, hi, "beyond the range of float32 (3.4e38)")
     return low, high
 
@@ -42,9 +41,15 @@ def _refuse(bad: np.ndarray, lo: np.ndarray, hi: np.ndarray, what: str) -> None:
         )
 
 
+def rounded_outward(lo: np.ndarray, hi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """float32 corners of boxes that hold the given ones, infinite beyond the range of float32; float32 as they are."""
+    with np.errstate(over="ignore"):
+        return _round_outward(lo, -np.inf), _round_outward(hi, np.inf)
+
+
 def _round_outward(values: np.ndarray, direction: float) -> np.ndarray:
     """float32 of `values`, a step towards `direction` (±inf) where the conversion went the other way."""
-    rounded = values.astype(np.float32)
+    rounded = values.astype(np.float32, copy=False)
     if values.dtype == np.float32:
         return rounded
     inward = rounded > values if direction < 0 else rounded < values
@@ -67,7 +72,7 @@ def checked_labels(label: np.ndarray | None, n: int) -> np.ndarray:
     if bad.any():
         first = int(bad.argmax())
         raise ValueError(f"labels: primitive {first} has label {label[first]}, expected 0 to {MAX_LABELS - 1}")
-    return label.astype(np.int32)
+    return label.astype(np.int32, copy=False)
 
 
 def spans(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:

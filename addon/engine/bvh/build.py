@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .agglomerate import agglomerate
-from .boxes import checked_boxes, checked_labels, half_areas, morton_order, spans, take_spans
+from .boxes import checked_boxes, checked_labels, half_areas, morton_order, spans
 from .cost import INTERSECTION_COST, TRAVERSAL_COST
 from .flatten import LEAF_SIZE, flatten
 from .split import split_topdown
@@ -28,7 +28,7 @@ def build(
     *,
     leaf_size: int = LEAF_SIZE,
     traversal_cost: float = TRAVERSAL_COST,
-    intersection_cost: float = INTERSECTION_COST,
+    intersection_cost: float | np.ndarray = INTERSECTION_COST,
 ) -> Bvh:
     """The hierarchy over n boxes.
 
@@ -38,7 +38,7 @@ def build(
             Default: all 0.
         leaf_size: most primitives in a leaf; fewer where the costs say so.
         traversal_cost: of visiting a node (testing the boxes of both children), in the unit of
-        intersection_cost: of testing one primitive.
+        intersection_cost: of testing one primitive; or (labels,), of each label.
 
     Raises:
         ValueError: a box is not finite, inverted, or beyond float32 (first bad primitive named); a bad label
@@ -48,33 +48,41 @@ def build(
 
 
 def assemble(
-    join: Callable[[np.ndarray, np.ndarray], Topology],
+    join: Callable[[np.ndarray], Topology],
     lo: np.ndarray,
     hi: np.ndarray,
     label: np.ndarray | None,
     leaf_size: int,
     traversal_cost: float,
-    intersection_cost: float,
+    intersection_cost: float | np.ndarray,
 ) -> Bvh:
-    """What all builders share: check the input, `join` the boxes into one binary tree, and flatten that."""
+    """What all builders share: check the input, `join` the spans into one binary tree, and flatten that.
+
+    Where they are many they lie along the curve, so that what belongs together lies together in memory.
+    """
     if leaf_size < 1:
         raise ValueError(f"leaf_size must be at least 1, not {leaf_size}")
     lo, hi = checked_boxes(lo, hi)
     label = checked_labels(label, len(lo))
     if len(lo) == 0:
         return empty_bvh()
-    return flatten(join(lo, hi), lo, hi, label, leaf_size, traversal_cost, intersection_cost)
-
-
-def _join(lo: np.ndarray, hi: np.ndarray) -> Topology:
-    """A complete tree over the (n, 3) float32 boxes."""
     span = spans(lo, hi)
-    topology = Topology(half_areas(span))
-    weight = np.ones(len(lo))
-    ids = np.arange(len(lo), dtype=np.int32)
+    curve = np.arange(len(lo))
     if len(lo) > TOP:
         curve = morton_order(span)
-        span, ids = agglomerate(take_spans(span, curve), ids[curve], topology, TOP)
+        for row in span:  # one at a time in place: half the memory
+            row[:] = row[curve]
+    topology = join(span)
+    del span
+    return flatten(topology, curve, lo, hi, label, leaf_size, traversal_cost, intersection_cost)
+
+
+def _join(span: np.ndarray) -> Topology:
+    """A complete tree over the (6, n) spans; overwrites them."""
+    topology = Topology(half_areas(span))
+    ids, weight = np.arange(topology.n, dtype=np.int32), np.ones(min(topology.n, TOP))
+    if topology.n > TOP:
+        span, ids = agglomerate(span, ids, topology, TOP)
         weight = topology.counts()[ids]
     split_topdown(span, ids, weight, topology)
     return topology

@@ -7,24 +7,39 @@ import numpy as np
 from .tree import Bvh
 
 TRAVERSAL_COST = 1.0  # of visiting a node, which tests the boxes of both its children
+PIECE = 1 << 15  # nodes worked on at a time
 INTERSECTION_COST = 0.5  # of testing a primitive: fewer texels than a node, and a leaf reads them in a row
 
 
-def sah_cost(bvh: Bvh, traversal_cost: float = TRAVERSAL_COST, intersection_cost: float = INTERSECTION_COST) -> float:
+def cost_by_label(intersection_cost: float | np.ndarray, label: np.ndarray) -> np.ndarray:
+    """(labels,) float32: the cost of testing a primitive of each label, from one for all or from one for each."""
+    cost = np.asarray(intersection_cost, np.float32)
+    return cost if cost.ndim else np.full(int(label.max()) + 1, cost)
+
+
+def sah_cost(
+    bvh: Bvh, traversal_cost: float = TRAVERSAL_COST, intersection_cost: float | np.ndarray = INTERSECTION_COST
+) -> float:
     """Expected cost of a random long ray that meets the root's box (Goldsmith and Salmon 1987).
 
     (sum of area(inner) * traversal_cost + sum of area(leaf) * count * intersection_cost) / area(root). If the
     root's box has no area (a point or a segment), every box counts as met. 0 for an empty hierarchy.
+    `intersection_cost` may be one for each label.
     """
     if len(bvh) == 0:
         return 0.0
     lo, hi = bvh.bounds.astype(np.float64)
     root = _half_area(hi - lo)
-    used = bvh.is_inner | bvh.is_leaf
-    boxes = bvh.boxes[used].astype(np.float64)
-    share = _half_area(boxes[:, 1] - boxes[:, 0]) / root if root > 0 else np.ones(len(boxes))
-    count = bvh.count[used]
-    return float(traversal_cost + np.sum(share * np.where(count > 0, count * intersection_cost, traversal_cost)))
+    test = cost_by_label(intersection_cost, np.maximum(bvh.label, 0))
+    total = traversal_cost
+    for start in range(0, len(bvh), PIECE):
+        piece = slice(start, start + PIECE)
+        used = (bvh.count[piece] > 0) | (bvh.child[piece] >= 0)
+        boxes, count = bvh.boxes[piece][used].astype(np.float64), bvh.count[piece][used]
+        share = _half_area(boxes[:, 1] - boxes[:, 0]) / root if root > 0 else np.ones(len(boxes))
+        cost = np.where(count > 0, count * test[bvh.label[piece][used]], traversal_cost)
+        total += float(np.sum(share * cost))
+    return total
 
 
 def statistics(bvh: Bvh) -> dict[str, int | float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .cost import cost_by_label
 from .refit import refit
 from .topology import Topology
 from .tree import MAX_DEPTH, MIXED, Bvh
@@ -13,26 +14,36 @@ LEAF_SIZE = 4
 
 def flatten(
     topology: Topology,
+    curve: np.ndarray,
     lo: np.ndarray,
     hi: np.ndarray,
     label: np.ndarray,
     leaf_size: int,
     traversal_cost: float,
-    intersection_cost: float,
+    intersection_cost: float | np.ndarray,
 ) -> Bvh:
-    """The `Bvh` of a complete `topology` over the (n, 3) float32 boxes with (n,) int32 labels, n > 0."""
+    """The `Bvh` of a complete `topology` over the (n, 3) float32 boxes with (n,) int32 labels, n > 0.
+
+    `curve` (n,) int64: which box primitive i of the topology is.
+    """
     topology.larger_first()
-    count, leaves, kind = _choose_leaves(topology, label, leaf_size, traversal_cost, intersection_cost)
+    count, leaves, kind = _choose_leaves(topology, label[curve], leaf_size, traversal_cost, intersection_cost)
     start, primitives = _depth_first(topology, count)
-    order, run, rank = _runs(primitives, label)
+    order, run, rank = _runs(curve[primitives], label)
+    del primitives
     child, size, kinds, depth = _lay_out(topology, leaves, kind, start, count, rank)
+    del count, leaves, kind, start, rank  # the boxes need room of their own
     no_boxes = np.empty((0, 2, 2, 3), np.float32)
     bvh = Bvh(no_boxes, child, size, kinds, order, run, depth)
     return refit(bvh, lo, hi)
 
 
 def _choose_leaves(
-    topology: Topology, label: np.ndarray, leaf_size: int, traversal_cost: float, intersection_cost: float
+    topology: Topology,
+    label: np.ndarray,
+    leaf_size: int,
+    traversal_cost: float,
+    intersection_cost: float | np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Bottom up: make a leaf of every subtree of one label and `leaf_size` primitives at most, where both its
     children are leaves and one is no dearer.
@@ -45,7 +56,8 @@ def _choose_leaves(
     kind = np.empty(2 * n - 1, np.int32)
     kind[:n] = label
     cost = np.empty(2 * n - 1, np.float32)
-    cost[:n] = topology.area[:n] * intersection_cost
+    single = cost_by_label(intersection_cost, label)
+    cost[:n] = topology.area[:n] * single[label]
     for batch in topology.batches:
         left, right = topology.left[batch], topology.right[batch]
         node = slice(n + batch.start, n + batch.stop)
@@ -53,7 +65,7 @@ def _choose_leaves(
         total = count[left] + count[right]
         kind[node] = np.where(kind[left] == kind[right], kind[left], MIXED)
         split = area * np.float32(traversal_cost) + cost[left] + cost[right]
-        whole = area * total * np.float32(intersection_cost)
+        whole = area * total * single[kind[node]]  # what is MIXED is no leaf, whatever it would cost
         below = leaves[left] + leaves[right]
         # Both children must be leaves, so that "one leaf below" means "in a leaf" all the way down.
         leaf = (below == 2) & (kind[node] >= 0) & (total <= leaf_size) & (whole <= split)

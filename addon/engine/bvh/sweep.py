@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .boxes import half_areas, spans
+from .boxes import half_areas
 from .build import assemble
 from .cost import INTERSECTION_COST, TRAVERSAL_COST
 from .flatten import LEAF_SIZE
@@ -20,15 +20,14 @@ def sweep_build(
     *,
     leaf_size: int = LEAF_SIZE,
     traversal_cost: float = TRAVERSAL_COST,
-    intersection_cost: float = INTERSECTION_COST,
+    intersection_cost: float | np.ndarray = INTERSECTION_COST,
 ) -> Bvh:
     """As `build`, without the clustering: several times slower for large n, the measure of its quality. n < 2^24."""
     return assemble(_join, lo, hi, label, leaf_size, traversal_cost, intersection_cost)
 
 
-def _join(lo: np.ndarray, hi: np.ndarray) -> Topology:
-    """A complete tree over the (n, 3) float32 boxes."""
-    span = spans(lo, hi)
+def _join(span: np.ndarray) -> Topology:
+    """A complete tree over the (6, n) spans."""
     topology = Topology(half_areas(span))
-    split_topdown(span, np.arange(len(lo), dtype=np.int32), np.ones(len(lo)), topology)
+    split_topdown(span, np.arange(topology.n, dtype=np.int32), np.ones(topology.n), topology)
     return topology

@@ -1,12 +1,13 @@
 """The kinds of primitives, a file each. `BY_KIND` is in the order of the leaf labels (`layout.KINDS`)."""
 
 from ..layout import KINDS
-from .base import Primitives, Similarity, invertible, keeps_shapes
+from .base import Primitives
 from .cone import Cones
 from .cylinder import Cylinders
 from .disc import Discs
 from .plane import Planes
 from .sphere import Spheres
+from .transforms import Similarity, invertible, keeps_shapes, thickened
 from .triangle import Triangles
 
 _CLASSES = {cls.kind: cls for cls in (Spheres, Cylinders, Cones, Discs, Triangles)}
@@ -26,4 +27,5 @@ __all__ = [
     "Triangles",
     "invertible",
     "keeps_shapes",
+    "thickened",
 ]

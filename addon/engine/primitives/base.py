@@ -14,27 +14,35 @@ from ..errors import SceneError
 
 @dataclass(frozen=True)
 class Column:
-    """One column: width (0: a scalar per row), default (None: must be given), whether it must be a unit vector."""
+    """One column: width (0: a scalar per row), default (None: must be given), whether it must be a unit vector, whether
+    it is of integers, whether NaN stands for none."""
 
     name: str
     width: int = 0
     default: object = None
     unit: bool = False
     integer: bool = False
+    optional: bool = False
 
 
 class Primitives:
     """Columns of primitives of one kind; every argument is an array of one row a primitive, or one value for all rows.
 
-    Raises SceneError when a value is not finite, an array has the wrong shape or a shape is degenerate.
+    What is given as one value stays one: a view that repeats it. `attributes`: by name (n, 4), (4,) or (n, k, 4)
+    float32 of any meaning, k values a primitive: one for all of it or, in kinds that say so, one at each of its
+    `attribute_places`. Raises SceneError when a value is not finite, an array has the wrong shape or a shape is
+    degenerate.
     """
 
     kind = ""
+    attribute_places = 1
+    #: Of testing a ray against one, where visiting a node of a tree costs 1: texels are most of it, a node has four.
+    intersection_cost = 0.5
     columns: tuple[Column, ...] = ()
     record = None
     surface_record = None
 
-    def __init__(self, **values):
+    def __init__(self, *, attributes=None, **values):
         unknown = set(values) - {column.name for column in self.columns}
         if unknown:
             raise TypeError(f"{self.kind}: unknown argument {sorted(unknown)[0]!r}")
@@ -47,7 +55,20 @@ class Primitives:
         for column in self.columns:
             shape = (count, column.width) if column.width else (count,)
             setattr(self, column.name, np.broadcast_to(arrays[column.name], shape))
+        self.attributes = {name: self._checked_attribute(name, v, count) for name, v in (attributes or {}).items()}
         self._check()
+
+    def _checked_attribute(self, name, values, count):
+        """Values of an attribute as (n, k, 4) float32."""
+        values = np.asarray(values, np.float32)
+        given = values.shape
+        if values.ndim in (1, 2):
+            values = values.reshape(-1, 1, given[-1])
+        places = sorted({1, self.attribute_places})
+        if values.ndim != 3 or len(values) not in (1, count) or values.shape[1] not in places or values.shape[2] != 4:
+            expected = " or ".join(f"({count}, {k}, 4)" for k in places)
+            raise SceneError(f"{self.kind}: attribute {name!r} has shape {given}, expected {expected}")
+        return np.broadcast_to(values, (count, *values.shape[1:]))
 
     def _checked(self, column, value):
         if value is None:
@@ -63,7 +84,7 @@ class Primitives:
             raise SceneError(f"{self.kind}: {column.name} has shape {array.shape}, expected (n, {column.width})")
         if not column.width and array.ndim > 1:
             raise SceneError(f"{self.kind}: {column.name} has shape {array.shape}, expected (n,)")
-        if not column.integer and not np.isfinite(array).all():
+        if not column.integer and not column.optional and not np.isfinite(array).all():
             bad = ~np.isfinite(array if not column.width else array.sum(axis=-1))
             raise SceneError(f"{self.kind}: {column.name} of number {int(np.argmax(bad))} is not finite")
         if column.unit:
@@ -88,24 +109,27 @@ class Primitives:
         return len(getattr(self, self.columns[0].name))
 
     def take(self, order):
-        """The rows `order` (k,) int, in that order."""
-        return self._with({column.name: getattr(self, column.name)[order] for column in self.columns})
+        """The rows `order`, (k,) int, (n,) bool or a slice (of which the columns are views), in that order."""
+        rows = {column.name: _rows(getattr(self, column.name), order) for column in self.columns}
+        return self._with(rows | {"attributes": {name: _rows(v, order) for name, v in self.attributes.items()}})
 
     def _with(self, arrays):
         """A new object of this class from arrays that are known to be right (no check)."""
         new = object.__new__(type(self))
-        for column in self.columns:
-            setattr(new, column.name, arrays.get(column.name, getattr(self, column.name)))
+        for name in (*(column.name for column in self.columns), "attributes"):
+            setattr(new, name, arrays.get(name, getattr(self, name)))
         return new
 
     @classmethod
     def concatenate(cls, parts):
-        """All rows of several objects of this kind, in order."""
+        """All rows of several objects of this kind, in order. An attribute that some lack is 0 there."""
         if len(parts) == 1:
             return parts[0]
         new = object.__new__(cls)
         for column in cls.columns:
-            setattr(new, column.name, np.concatenate([getattr(part, column.name) for part in parts]))
+            setattr(new, column.name, _joined([getattr(part, column.name) for part in parts]))
+        names = dict.fromkeys(name for part in parts for name in part.attributes)
+        new.attributes = {name: _joined(_widened(name, parts)) for name in names}
         return new
 
     def bounds(self):
@@ -132,62 +156,33 @@ class Primitives:
         raise NotImplementedError
 
 
-class Similarity:
-    """A transform that keeps shapes: uniform scale, rotation and translation; one for all primitives, or one a row.
-
-    `rotation` (3, 3) or (n, 3, 3), `scale` a number or (n,), `translation` (3,) or (n, 3).
-    """
-
-    def __init__(self, rotation, scale, translation):
-        self.rotation, self.scale, self.translation = rotation, scale, translation
-
-    @classmethod
-    def of(cls, matrices):
-        """From matrices (4, 4) or (n, 4, 4) for which `keeps_shapes` holds."""
-        matrices = np.asarray(matrices, np.float64)
-        linear = matrices[..., :3, :3]
-        scale = np.cbrt(np.linalg.det(linear))
-        return cls(linear / scale[..., None, None], scale, matrices[..., :3, 3])
-
-    def repeated(self, count):
-        """Each of n transforms `count` times in a row."""
-        return Similarity(*(np.repeat(a, count, axis=0) for a in (self.rotation, self.scale, self.translation)))
-
-    def points(self, points):
-        return self.directions(points) * np.asarray(self.scale)[..., None] + self.translation
-
-    def directions(self, directions):
-        return np.einsum("...ij,...j->...i", self.rotation, directions)
+def is_one_value(array):
+    """Whether an array (n, ...), n > 0, repeats one row."""
+    return len(array) == 1 or (array.strides[0] == 0 and len(array) > 1)
 
 
-#: Largest relative deviation from conformal that still counts as such: about the rounding of a float32 matrix.
-_CONFORMAL = 2e-6
+def _rows(array, order):
+    """array[order] of (n, ...); what repeats one row still does."""
+    if isinstance(order, slice) or not is_one_value(array):
+        return array[order]
+    count = np.count_nonzero(order) if order.dtype == bool else len(order)
+    return np.broadcast_to(array[:1], (count, *array.shape[1:]))
 
 
-def keeps_shapes(matrices):
-    """Which of matrices (n, 4, 4) are similarities: (n,) bool. Those that shear, stretch or mirror (which would turn
-    the uv around) are not: what they move has to be instanced."""
-    linear = np.asarray(matrices, np.float64)[:, :3, :3]
-    gram = np.swapaxes(linear, 1, 2) @ linear
-    squared = np.trace(gram, axis1=1, axis2=2) / 3.0
-    deviation = np.abs(gram - squared[:, None, None] * np.eye(3)).max(axis=(1, 2))
-    return (deviation <= 2.0 * _CONFORMAL * squared) & (np.linalg.det(linear) > 0.0)
+def _joined(arrays):
+    """Arrays (n, ...) one after the other; one row repeated where they all repeat the same."""
+    first = arrays[0][:1]
+    if all(is_one_value(array) and np.array_equal(array[:1], first, equal_nan=True) for array in arrays):
+        return np.broadcast_to(first, (sum(map(len, arrays)), *first.shape[1:]))
+    return np.concatenate(arrays)
 
 
-#: Volume of the box of a matrix's unit axes below which float32 cannot invert it.
-_SINGULAR = 1e-6
-
-
-def invertible(matrices):
-    """Which of affine matrices (n, 4, 4) are finite and can be inverted in float32: (n,) bool.
-
-    Each axis counts by its direction, so that no scale is too small, but axes in one plane are found.
-    """
-    matrices = np.asarray(matrices, np.float64)
-    finite = np.isfinite(matrices).all(axis=(1, 2))
-    linear = np.where(finite[:, None, None], matrices[:, :3, :3], 0.0)
-    lengths = np.linalg.norm(linear, axis=1)
-    return np.abs(np.linalg.det(linear / np.where(lengths > 0.0, lengths, 1.0)[:, None, :])) >= _SINGULAR
+def _widened(name, parts):
+    """The values (n, k, 4) of an attribute in each of several parts, k alike; 0 in those that lack it."""
+    lacking = np.zeros((1, 1, 4), np.float32)
+    values = [part.attributes.get(name, lacking) for part in parts]
+    width = max(v.shape[1] for v in values)
+    return [np.broadcast_to(v, (len(part), width, 4)) for v, part in zip(values, parts, strict=True)]
 
 
 def any_perpendicular(axis):

@@ -18,6 +18,7 @@ class Cones(Primitives):
     """
 
     kind = "cone"
+    attribute_places = 2
     record = CONE
     surface_record = CONE_SURFACE
     columns = (

@@ -14,6 +14,7 @@ class Cylinders(Primitives):
     """
 
     kind = "cylinder"
+    attribute_places = 2
     record = CYLINDER
     surface_record = CYLINDER_SURFACE
     columns = (

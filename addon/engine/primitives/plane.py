@@ -3,11 +3,12 @@
 import numpy as np
 
 from ..layout import PLANE, PLANE_SURFACE
+from ..visibility import Visibility
 from .base import Column, Primitives, dot, perpendicular_part
 
 
 class Planes(Primitives):
-    """Infinite planes: point (n, 3), normal (n, 3), material (n,) int, meridian (n, 3).
+    """Infinite planes: point (n, 3), normal (n, 3), material (n,) int, meridian (n, 3), tile (n,), visibility (n,) int.
 
     uv = ((p - point) . e0, (p - point) . e1) / tile with e0 the meridian and e1 = normal x e0, so that an image
     repeats every `tile` units; the paper leaves the plane's uv open.
@@ -22,6 +23,7 @@ class Planes(Primitives):
         Column("material", default=0, integer=True),
         Column("meridian", 3, default=(1.0, 0.0, 0.0), unit=True),
         Column("tile", default=1.0),
+        Column("visibility", default=Visibility.ALL, integer=True),
     )
 
     def _check(self):
@@ -40,6 +42,7 @@ class Planes(Primitives):
     def records(self):
         hit = self.record.zeros(len(self))
         hit["normal"], hit["offset"] = self.normal, -dot(self.normal, self.point)
+        hit["visibility"] = self.visibility
         surface = self.surface_record.zeros(len(self))
         surface["meridian"] = perpendicular_part(self.meridian, self.normal) / self.tile[:, None]
         surface["material"], surface["origin"] = self.material, self.point

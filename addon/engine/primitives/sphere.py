@@ -2,17 +2,19 @@
 
 import numpy as np
 
-from ..layout import SPHERE, SPHERE_SURFACE
-from .base import Column, Primitives, angle_u, dot, nearest_root, perpendicular_part
+from ..layout import FIXED_UV, SPHERE, SPHERE_SURFACE
+from .base import Column, Primitives, angle_u, dot, is_one_value, nearest_root, perpendicular_part
 
 
 class Spheres(Primitives):
-    """Spheres: center (n, 3), radius (n,), material (n,) int, pole (n, 3) and meridian (n, 3).
+    """Spheres: center (n, 3), radius (n,), material (n,) int, pole (n, 3), meridian (n, 3), fixed_uv (n, 2).
 
-    The pole e2 is where v = 1, the meridian e0 where u = 0. A negative radius shows the inside only.
+    The pole e2 is where v = 1, the meridian e0 where u = 0. A negative radius shows the inside only. `fixed_uv` is the
+    uv of the whole sphere, NaN for none.
     """
 
     kind = "sphere"
+    intersection_cost = 0.25  # one texel; a leaf holds some, and a sphere takes less than 48 bytes, its tree included
     record = SPHERE
     surface_record = SPHERE_SURFACE
     columns = (
@@ -21,6 +23,7 @@ class Spheres(Primitives):
         Column("material", default=0, integer=True),
         Column("pole", 3, default=(0.0, 0.0, 1.0), unit=True),
         Column("meridian", 3, default=(1.0, 0.0, 0.0), unit=True),
+        Column("fixed_uv", 2, default=(np.nan, np.nan), optional=True),
     )
 
     def _check(self):
@@ -55,10 +58,17 @@ class Spheres(Primitives):
 
     def _rotation_parameters(self):
         """Modified Rodrigues parameters (n, 3) of the frames, tan(angle / 4) times the axis: three numbers without
-        loss."""
-        if self.pole.strides[0] == 0 and self.meridian.strides[0] == 0:  # one frame for all: most often no rotation
-            return _rodrigues(self._with({n: getattr(self, n)[:1] for n in ("pole", "meridian")})._frames())
-        return _rodrigues(self._frames())
+        loss. (u, v, FIXED_UV) for spheres with one uv."""
+        if not all(is_one_value(column) for column in (self.pole, self.meridian, self.fixed_uv)):
+            fixed = np.isfinite(self.fixed_uv).all(axis=-1)
+            parameters = _rodrigues(self._frames())
+            parameters[fixed, :2], parameters[fixed, 2] = self.fixed_uv[fixed], FIXED_UV
+            return parameters
+        # One for all, most often no rotation.
+        one = self._with({name: getattr(self, name)[:1] for name in ("pole", "meridian", "fixed_uv")})
+        if np.isfinite(one.fixed_uv).all():
+            return np.array([[*one.fixed_uv[0], FIXED_UV]])
+        return _rodrigues(one._frames())
 
     def reference_hit(self, origin, direction, t_min=0.0):
         # The distance of the centre from the ray, (23), keeps its digits where |d|^2 - R^2 would lose them.
@@ -75,7 +85,8 @@ class Spheres(Primitives):
         normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
         local = np.einsum("nij,ni->nj", self._frames(), normal)
         v = 1.0 - np.arccos(np.clip(local[:, 2], -1.0, 1.0)) / np.pi
-        return normal, np.stack([angle_u(local[:, 0], local[:, 1]), v], axis=-1)
+        uv = np.stack([angle_u(local[:, 0], local[:, 1]), v], axis=-1)
+        return normal, np.where(np.isfinite(self.fixed_uv), self.fixed_uv, uv)
 
 
 def _rodrigues(frames):

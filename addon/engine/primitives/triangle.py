@@ -14,6 +14,7 @@ class Triangles(Primitives):
     """
 
     kind = "triangle"
+    attribute_places = 3
     record = TRIANGLE
     surface_record = TRIANGLE_SURFACE
     columns = (

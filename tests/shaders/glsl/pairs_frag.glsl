@@ -5,11 +5,11 @@
 void main()
 {
   TestRay test = read_test_ray(TEST_INDEX);
-  Ray ray = ray_make(test.origin, test.direction);
+  Ray ray = ray_make(test.origin, test.direction, test.kind);
   float t = TEST_HIT(TEST_READ(TEST_INDEX), ray, test.t_max);
   Surface surface = TEST_SURFACE(TEST_READ(TEST_INDEX), TEST_READ_SURFACE(TEST_INDEX), ray, t);
   vec3 spawned = ray_spawn(surface, test.next);
-  float t_next = TEST_HIT(TEST_READ(TEST_INDEX), ray_make(spawned, test.next), 1e30);
+  float t_next = TEST_HIT(TEST_READ(TEST_INDEX), ray_make(spawned, test.next, test.kind), 1e30);
   out_hit = vec4(t, surface.error, float(surface.material), 0.0);
   out_position = vec4(surface.position, surface.uv.x);
   out_normal = vec4(surface.geometric_normal, surface.uv.y);

@@ -6,7 +6,7 @@
 void main()
 {
   TestRay test = read_test_ray(TEST_INDEX);
-  Ray ray = ray_make(test.origin, test.direction);
+  Ray ray = ray_make(test.origin, test.direction, test.kind);
   Hit hit = bvh_traverse(ray, test.t_max, false);
   Hit any = bvh_traverse(ray, test.t_max, true);
   out_hit = vec4(hit.t, float(hit.kind), float(hit.instance), float(any.kind));

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How fine curves have to be: as pixels are where they are seen."""
+
+import numpy as np
+
+from .keys import data_key
+
+
+class PixelSizes:
+    """How long a pixel is, in the space of an object, where the object is nearest to the camera.
+
+    `camera`: an engine Camera; `height` of the picture in pixels.
+    """
+
+    #: Of its own size, how near the camera an object counts at least: it may stand in the middle of it.
+    _NEAREST = 0.02
+
+    def __init__(self, camera, height, all_copies):
+        self._camera = camera
+        self._at_one = (camera.window[3] - camera.window[2]) / height
+        self._least = {}
+        for copies in all_copies:
+            if copies.kind in ("CURVES", "CURVE", "HAIR"):
+                key = self._key(copies)
+                self._least[key] = min(self._least.get(key, np.inf), self._length(copies))
+
+    def of(self, copies):
+        """The length, for all copies of the data in the scene."""
+        length = self._least.get(self._key(copies), np.inf)
+        return length if np.isfinite(length) else 1.0
+
+    def _key(self, copies):
+        return copies.kind, data_key(copies.data)
+
+    def _length(self, copies):
+        low, high = _bounds(copies)
+        matrices = copies.matrices.astype(np.float64)
+        scale = np.linalg.norm(matrices[:, :3, :3], axis=1).max(axis=1)
+        center = matrices[:, :3, :3] @ ((low + high) / 2.0) + matrices[:, :3, 3]
+        radius = scale * np.linalg.norm(high - low) / 2.0
+        distance = np.ones(len(scale))
+        if not self._camera.orthographic:
+            distance = np.linalg.norm(center - self._camera.matrix[:3, 3], axis=1) - radius
+            distance = np.maximum(distance, self._NEAREST * radius)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            length = self._at_one * distance / scale
+        length = length[np.isfinite(length) & (length > 0.0)]
+        return float(length.min()) if len(length) else np.inf
+
+
+def _bounds(copies):
+    """The lower and upper corner of the data of strands, in its own space."""
+    if copies.is_own:
+        corners = np.array(copies.obj.bound_box)
+    elif copies.kind == "CURVE":  # Blender tells nothing of them
+        corners = np.empty((0, 3))
+    else:
+        corners = np.empty((len(copies.data.points), 3), np.float32)
+        if len(corners):
+            copies.data.attributes["position"].data.foreach_get("vector", corners.reshape(-1))
+        corners = corners[np.isfinite(corners).all(axis=1)]
+    return (corners.min(axis=0), corners.max(axis=0)) if len(corners) else (np.zeros(3), np.zeros(3))
