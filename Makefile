@@ -10,6 +10,9 @@ help:  ## list these commands
 render: .venv/.ready  ## render the first picture in Blender: build/first_picture.png
 	$(PYTHON) examples/first_picture.py --output build/first_picture.png
 
+molecules: .venvs/molecules/.ready  ## render Molecular Nodes' styles of 47,681 atoms: build/molecular_nodes.png
+	.venvs/molecules/bin/python examples/molecular_nodes.py --output build/molecular_nodes.png
+
 test: .venv/.ready  ## run the tests: without Blender, shaders, pictures, in Blender as a module
 	@tools/setup programs povray
 	$(PYTHON) -m pytest tests
@@ -42,4 +45,7 @@ $(BLENDERS:%=test-bpy-%): test-bpy-%: .venvs/bpy-%/.ready
 $(BLENDERS:%=.venvs/bpy-%/.ready): .venvs/bpy-%/.ready: pyproject.toml tools/setup
 	@tools/setup environment $*
 
-.PHONY: help render test test-all test-app lint zip bench clean $(BLENDERS:%=test-bpy-%)
+.venvs/molecules/.ready: pyproject.toml tools/setup
+	@tools/setup molecules
+
+.PHONY: help render molecules test test-all test-app lint zip bench clean $(BLENDERS:%=test-bpy-%)

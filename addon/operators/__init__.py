@@ -1,6 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the user can do with Conic: Add > Conic."""
+"""What the user can do with Conic: Add > Conic, and File > Import > Neutral File Format."""
 
-from .add_shape import register, unregister
+from . import add_shape, import_nff
 
-__all__ = ["register", "unregister"]
+
+def register():
+    add_shape.register()
+    import_nff.register()
+
+
+def unregister():
+    import_nff.unregister()
+    add_shape.unregister()

@@ -6,16 +6,7 @@ from bpy.props import FloatProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
 from . import proxy_mesh
-
-
-def new_mesh(name, proxy):
-    """A Blender mesh from a `ProxyMesh`."""
-    mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata(proxy.vertices.tolist(), [], proxy.faces)
-    mesh.polygons.foreach_set("use_smooth", proxy.smooth)
-    mesh.uv_layers.new(name="UVMap").uv.foreach_set("vector", proxy.uv.astype("f").reshape(-1))
-    mesh.update()
-    return mesh
+from .new_mesh import new_mesh
 
 
 def length(name, description, *, default=1.0, smallest=1e-6):

@@ -24,6 +24,12 @@ class ProxyMesh:
     uv: np.ndarray
     smooth: np.ndarray
 
+    def inverted(self):
+        """The same with faces that look the other way."""
+        corners = np.split(np.arange(len(self.uv)), np.cumsum([len(face) for face in self.faces])[:-1])
+        order = np.concatenate([corner[::-1] for corner in corners])
+        return ProxyMesh(self.vertices, [face[::-1] for face in self.faces], self.uv[order], self.smooth)
+
     @classmethod
     def join(cls, *parts):
         """Vertices are shared between parts, which number them alike: those of the first part hold."""
@@ -91,8 +97,9 @@ def sphere(radius):
     return ProxyMesh.join(*bands)
 
 
-def cone(radius1, radius2, depth):
-    """A solid cone about the Z axis, `radius1` at -depth / 2, `radius2` at depth / 2; one of them may be 0.
+def cone(radius1, radius2, depth, *, caps=True):
+    """A cone about the Z axis, `radius1` at -depth / 2, `radius2` at depth / 2; one of them may be 0. With `caps` it
+    is solid.
 
     Its side has u = theta / 2 pi and v = height / depth, its caps the uv of discs.
     """
@@ -106,7 +113,7 @@ def cone(radius1, radius2, depth):
     vertices = np.concatenate(vertices)
     parts = [_band(vertices, *starts, 0.0, 1.0)]
     for start, (radius, _), upwards in zip(starts, ends, (False, True), strict=True):
-        if radius > 0.0:
+        if caps and radius > 0.0:
             parts.append(_cap(vertices, start, radius, upwards))
     return ProxyMesh.join(*parts)
 
