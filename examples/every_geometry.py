@@ -351,41 +351,45 @@ def matte(name, color):
 
 
 def build_scene(columns=5):
-    """All geometries in rows on a floor, with lights and a camera."""
+    """All geometries in rows on a floor without end, with lights and a camera."""
     scene = bpy.context.scene
     scene.render.engine = "CONIC"
-    rows = -(-len(BUILDERS) // columns)
     for k, ((name, build), code) in enumerate(zip(BUILDERS.items(), COLORS, strict=True)):
-        place = Vector(((k % columns - (columns - 1) / 2.0) * SPACING, 0.0, (rows - 1 - k // columns) * SPACING + 1.3))
+        row, column = divmod(k, columns)
+        place = Vector(((column - (columns - 1) / 2.0) * SPACING, -row * 3.7, 1.1))
         for obj in build(matte(name, linear(code))):
             if obj.parent is None:
                 obj.location += place
-    _add_room(rows)
+    _add_floor()
     _add_lights()
+    scene.world = bpy.data.worlds.new("sky")
+    scene.world.color = linear("aebdca")
     camera = bpy.data.cameras.new("camera")
-    camera.lens = 60.0
+    camera.lens = 68.0
     scene.camera = link(camera, "camera")
-    middle = Vector((0.0, 0.0, rows * SPACING / 2.0))
-    scene.camera.location = middle + Vector((-3.0, -24.0, 2.0))
-    scene.camera.rotation_euler = (middle - scene.camera.location).to_track_quat("-Z", "Y").to_euler()
+    scene.camera.location = (-4.0, -26.0, 17.0)
+    scene.camera.rotation_euler = (Vector((0.0, -3.6, 0.7)) - scene.camera.location).to_track_quat("-Z", "Y").to_euler()
     scene.frame_set(5)  # particles are born by then
     return scene
 
 
-def _add_room(rows):
-    """A wall behind and a floor under everything, both without end."""
-    grey = matte("room", (0.55, 0.55, 0.55))
-    for name, location, turn in (("floor", (0, 0, 0), (0, 0, 0)), ("wall", (0, 2.5, rows), (pi / 2.0, 0, 0))):
-        bpy.ops.mesh.primitive_plane_add(size=60.0, location=location, rotation=turn)
-        with_material(bpy.context.object, grey).name = name
-        bpy.context.object.conic.primitive = "PLANE"
+def _add_floor():
+    bpy.ops.mesh.primitive_plane_add(size=20.0)
+    floor = with_material(bpy.context.object, matte("floor", linear("e8e5df")))
+    floor.name, floor.conic.primitive = "floor", "PLANE"
+    shader = floor.data.materials[0].node_tree.nodes["Principled BSDF"]
+    shader.inputs["Roughness"].default_value = 0.5
 
 
 def _add_lights():
-    for location, watts in (((-9.0, -12.0, 14.0), 4000.0), ((10.0, -14.0, 6.0), 1800.0), ((0.0, -16.0, 4.0), 900.0)):
-        light = bpy.data.lights.new("lamp", "POINT")
-        light.energy, light.shadow_soft_size = watts, 0.0
-        link(light, "lamp").location = location
+    """A sun from the upper left and two lamps that lighten its shadows."""
+    sun = bpy.data.lights.new("sun", "SUN")
+    sun.energy, sun.angle = 3.0, 0.0
+    link(sun, "sun").rotation_euler = (0.65, -0.45, 0.0)
+    for location, watts in (((9.0, -18.0, 9.0), 2200.0), ((-10.0, -16.0, 5.0), 900.0)):
+        lamp = bpy.data.lights.new("lamp", "POINT")
+        lamp.energy, lamp.shadow_soft_size = watts, 0.0
+        link(lamp, "lamp").location = location
 
 
 def main():

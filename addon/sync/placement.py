@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..engine.primitives import Similarity, invertible, keeps_shapes, thickened
+from ..engine.primitives import AxialStretch, Similarity, invertible, keeps_round, keeps_shapes, thickened
 from ..engine.scene import Geometry, Instances, Planes, Visibility
 from .shapes import Shape
 
@@ -84,10 +84,11 @@ class Placement:
         self._worlds = {}
 
     def _shapes(self, stand):
-        kept = keeps_shapes(stand.matrices)
+        axis = stand.drawn.axis
+        kept = keeps_shapes(stand.matrices) if axis is None else keeps_round(stand.matrices, axis)
         if kept.any():
             world, whole = self._world(stand.visibility), stand.take(kept)
-            moves = Similarity.of(whole.matrices)
+            moves = Similarity.of(whole.matrices) if axis is None else AxialStretch.of(whole.matrices, axis)
             for part in stand.drawn.primitives:
                 world.add(_copies(part, moves, whole))
         if not kept.all():

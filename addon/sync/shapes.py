@@ -10,6 +10,8 @@ from .recognise import Cone, Cylinder, Disc, Recognition, Sphere, UvMap
 
 #: Relative extent below which a bounding box is flat.
 _FLAT = 1e-6
+#: How far the cosine of the angle between two axes may be from 1.
+_PARALLEL = 1e-9
 
 
 @dataclass(frozen=True)
@@ -19,6 +21,25 @@ class Shape:
 
     primitives: tuple
     local: np.ndarray
+
+    @property
+    def axis(self):
+        """The unit vector (3,) around which all its primitives, cylinders, cones and discs, are round; None where there
+        is no such one."""
+        directions = [_directions(part) for part in self.primitives]
+        if any(of_part is None for of_part in directions):
+            return None
+        directions = np.concatenate(directions).astype(np.float64)
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+        parallel = np.abs(directions @ directions[0]) >= 1.0 - _PARALLEL
+        return directions[0] if parallel.all() else None
+
+
+def _directions(part):
+    """The axis (n, 3) of each row of cylinders, cones or discs; None for other kinds."""
+    if isinstance(part, Discs):
+        return part.normal
+    return part.apex - part.base if isinstance(part, Cylinders | Cones) else None
 
 
 def shape_of(recognition):

@@ -8,6 +8,7 @@ import pytest
 from addon.engine.errors import SceneError
 from addon.engine.primitives import (
     BY_KIND,
+    AxialStretch,
     Cones,
     Cylinders,
     Discs,
@@ -16,6 +17,7 @@ from addon.engine.primitives import (
     Spheres,
     Triangles,
     invertible,
+    keeps_round,
     keeps_shapes,
     thickened,
 )
@@ -238,6 +240,56 @@ def test_a_float32_rotation_is_a_similarity():
 def turned(seed):
     rotation, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
     return rotation
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("kind", ["cylinder", "cone", "disc"])
+def test_round_bodies_may_be_stretched_along_their_axis(kind, seed):
+    """What a ray meets, and its uv, are those of the ray in the space before the stretch."""
+    generator, count = np.random.default_rng(seed), 400
+    axis = generator.normal(size=3)
+    axis /= np.linalg.norm(axis)
+    frame = np.linalg.qr(np.stack([axis, *generator.normal(size=(2, 3))], axis=-1))[0][:, ::-1]  # axis last, or -axis
+    frame *= np.sign(np.linalg.det(frame))
+    middle, meridian = generator.normal(size=(count, 3)), np.tile(frame[:, 0], (count, 1))
+    ends = {"base": middle, "apex": middle + axis * generator.uniform(0.3, 2.0, (count, 1)), "meridian": meridian}
+    radius = generator.uniform(0.5, 1.0, count)
+    body = {
+        "cylinder": lambda: Cylinders(**ends, radius=radius),
+        "cone": lambda: Cones(**ends, base_radius=radius, apex_radius=0.3 * radius),
+        "disc": lambda: Discs(center=middle, normal=np.tile(axis, (count, 1)), radius=radius, meridian=meridian),
+    }[kind]()
+    matrices = np.tile(np.eye(4), (count, 1, 1))
+    turns = np.linalg.qr(generator.normal(size=(count, 3, 3)))[0]
+    turns *= np.sign(np.linalg.det(turns))[:, None, None]
+    across, along = 10.0 ** generator.uniform(-2, 2, (2, count))
+    matrices[:, :3, :3] = turns @ (frame * np.stack([across, across, along], axis=-1)[:, None]) @ frame.T
+    matrices[:, :3, 3] = generator.normal(size=(count, 3))
+    assert keeps_round(matrices, axis).all() and not keeps_shapes(matrices).any()
+    moved = body.transformed(AxialStretch.of(matrices, axis))
+    origin = middle + 3.0 * generator.normal(size=(count, 3))
+    direction = middle + 0.3 * generator.normal(size=(count, 3)) - origin
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    t = body.reference_hit(origin, direction)
+    there = np.einsum("nij,nj->ni", matrices[:, :3, :3], direction)
+    stretch = np.linalg.norm(there, axis=1)
+    moved_origin = np.einsum("nij,nj->ni", matrices[:, :3, :3], origin) + matrices[:, :3, 3]
+    found = moved.reference_hit(moved_origin, there / stretch[:, None])
+    assert 0.2 < np.isfinite(t).mean() < 1.0
+    np.testing.assert_allclose(found, t * stretch, rtol=1e-6)
+    hit = np.isfinite(t)
+    point = (origin + np.where(hit, t, 0.0)[:, None] * direction)[hit]
+    _, uv = body.take(hit).reference_surface(point)
+    _, moved_uv = moved.take(hit).reference_surface((moved_origin + found[:, None] / stretch[:, None] * there)[hit])
+    np.testing.assert_allclose(moved_uv, uv, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "linear",
+    [np.diag([1, 1.001, 2]), np.diag([1, 1, -2.0]), [[1, 0, 0.01], [0, 1, 0], [0, 0, 1]], np.diag([1.0, 1, 0])],
+)
+def test_what_does_not_keep_round_bodies(linear):
+    assert not keeps_round(matrix_of(linear)[None], (0.0, 0.0, 1.0)).any()
 
 
 @pytest.mark.parametrize("scales", [(1, 1, 0), (0, 2, 3), (5e-7, 0, 1e-6), (1e8, 0, 1e7), (1, 1, 1e-12)])

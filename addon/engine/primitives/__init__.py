@@ -7,7 +7,7 @@ from .cylinder import Cylinders
 from .disc import Discs
 from .plane import Planes
 from .sphere import Spheres
-from .transforms import Similarity, invertible, keeps_shapes, thickened
+from .transforms import AxialStretch, Similarity, invertible, keeps_round, keeps_shapes, thickened
 from .triangle import Triangles
 
 _CLASSES = {cls.kind: cls for cls in (Spheres, Cylinders, Cones, Discs, Triangles)}
@@ -17,6 +17,7 @@ BY_KIND = tuple(_CLASSES[kind] for kind in KINDS if kind in _CLASSES)
 
 __all__ = [
     "BY_KIND",
+    "AxialStretch",
     "Cones",
     "Cylinders",
     "Discs",
@@ -26,6 +27,7 @@ __all__ = [
     "Spheres",
     "Triangles",
     "invertible",
+    "keeps_round",
     "keeps_shapes",
     "thickened",
 ]

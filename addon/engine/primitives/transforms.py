@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .base import is_one_value
+from .base import any_perpendicular, dot, is_one_value
 
 
 class Similarity:
@@ -18,9 +18,9 @@ class Similarity:
     def of(cls, matrices):
         """From matrices (4, 4) or (n, 4, 4) for which `keeps_shapes` holds."""
         matrices = np.asarray(matrices, np.float64)
-        linear = matrices[..., :3, :3]
-        scale = np.cbrt(np.linalg.det(linear))
-        return cls(linear / scale[..., None, None], scale, matrices[..., :3, 3])
+        x, y, z = _columns(matrices)
+        scale = np.cbrt(dot(x, np.cross(y, z)))
+        return cls(matrices[..., :3, :3] / scale[..., None, None], scale, matrices[..., :3, 3])
 
     def repeated(self, count):
         """Each of n transforms `count` times in a row."""
@@ -42,11 +42,64 @@ _CONFORMAL = 2e-6
 def keeps_shapes(matrices):
     """Which of matrices (n, 4, 4) are similarities: (n,) bool. Those that shear, stretch or mirror (which would turn
     the uv around) are not: what they move has to be instanced."""
-    linear = np.asarray(matrices, np.float64)[:, :3, :3]
-    gram = np.swapaxes(linear, 1, 2) @ linear
-    squared = np.trace(gram, axis1=1, axis2=2) / 3.0
-    deviation = np.abs(gram - squared[:, None, None] * np.eye(3)).max(axis=(1, 2))
-    return (deviation <= 2.0 * _CONFORMAL * squared) & (np.linalg.det(linear) > 0.0)
+    x, y, z = _columns(np.asarray(matrices, np.float64))
+    lengths = [dot(column, column) for column in (x, y, z)]
+    squared = sum(lengths) / 3.0
+    deviations = [dot(x, y), dot(y, z), dot(z, x), *(length - squared for length in lengths)]
+    deviation = np.max(np.abs(deviations), axis=0)
+    return (deviation <= 2.0 * _CONFORMAL * squared) & (dot(x, np.cross(y, z)) > 0.0)
+
+
+class AxialStretch(Similarity):
+    """A transform that stretches along one axis of a shape, and keeps cylinders, cones and discs around that axis.
+
+    `scale` is what it does to their radii; `linear` (n, 3, 3) moves points.
+    """
+
+    def __init__(self, linear, rotation, scale, translation):
+        super().__init__(rotation, scale, translation)
+        self.linear = linear
+
+    @classmethod
+    def of(cls, matrices, axis):
+        """From matrices (n, 4, 4) for which `keeps_round` holds with the unit vector `axis` (3,)."""
+        matrices = np.asarray(matrices, np.float64)
+        frame = _frame(axis)
+        linear = matrices[:, :3, :3]
+        axes = linear @ frame
+        lengths = np.linalg.norm(axes, axis=1, keepdims=True)
+        return cls(linear, (axes / lengths) @ frame.T, lengths[:, 0, :2].mean(axis=1), matrices[:, :3, 3])
+
+    def repeated(self, count):
+        arrays = (self.linear, self.rotation, self.scale, self.translation)
+        return AxialStretch(*(np.repeat(a, count, axis=0) for a in arrays))
+
+    def points(self, points):
+        return np.einsum("nij,nj->ni", self.linear, points) + self.translation
+
+
+def keeps_round(matrices, axis):
+    """Which of matrices (n, 4, 4) leave a body of revolution around the unit vector `axis` (3,) one: (n,) bool. They
+    may stretch along the axis, but neither mirror nor shear."""
+    x, y, z = _columns(np.asarray(matrices, np.float64)[:, :3, :3] @ _frame(axis))
+    xx, yy, zz = (dot(column, column) for column in (x, y, z))
+    squared = (xx + yy) / 2.0
+    across = np.max(np.abs([dot(x, y), xx - squared, yy - squared]), axis=0)
+    along = np.max(np.abs([dot(y, z), dot(z, x)]), axis=0)
+    upright = (across <= 2.0 * _CONFORMAL * squared) & (along <= 2.0 * _CONFORMAL * np.sqrt(squared * zz))
+    return upright & (dot(x, np.cross(y, z)) > 0.0)
+
+
+def _columns(matrices):
+    """The three axes (..., 3) of matrices (..., 3 or 4, 3 or 4)."""
+    return (matrices[..., :3, column] for column in range(3))
+
+
+def _frame(axis):
+    """A rotation matrix (3, 3) whose last column is a unit vector (3,)."""
+    axis = np.asarray(axis, np.float64)
+    side = any_perpendicular(axis)
+    return np.stack([side, np.cross(axis, side), axis], axis=-1)
 
 
 #: Volume of the box of a matrix's unit axes below which float32 cannot invert it.
