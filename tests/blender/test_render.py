@@ -1,5 +1,6 @@
 """F12: the whole way from Blender's scene to the written picture, through the RenderEngine."""
 
+import ctypes
 import gc
 import os
 import subprocess
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 from addon import render_engine, render_session
+from addon.engine.devices.headless import HeadlessDevice
 from tests.blender.pictures import picture
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -399,3 +401,16 @@ def test_blenders_gpu_and_a_headless_context_give_the_same_picture(tmp_path):
     assert ours[..., :3].std() > 0.02, "there is something to see"
     different = np.abs(ours - other).max(axis=-1) > 1e-4 * np.maximum(1.0, np.abs(other).max(axis=-1))
     assert different.mean() < 0.002
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the library is called so there")
+def test_a_headless_device_gives_back_the_context(scene, tmp_path):
+    """Blender's context is current after it as before: else its programs could not be freed, and Blender would end."""
+    pytest.importorskip("moderngl")  # not in the application
+    egl = ctypes.CDLL("libEGL.so.1")
+    egl.eglGetCurrentContext.restype = ctypes.c_void_p
+    scene.render.filepath = str(tmp_path / "picture.exr")
+    bpy.ops.render.render(write_still=True)
+    before = egl.eglGetCurrentContext()
+    HeadlessDevice().close()
+    assert egl.eglGetCurrentContext() == before

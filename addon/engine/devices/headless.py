@@ -1,6 +1,8 @@
 """A context without a window through moderngl: tests, command line and library use. The only file that imports
 moderngl."""
 
+import contextlib
+import ctypes
 import functools
 import re
 
@@ -17,6 +19,38 @@ void main() { gl_Position = vec4(position, 0.0, 1.0); }
 _NO_DRIVER = """no OpenGL driver for drawing without a window was found ({cause}).
 Install one: on Debian and Ubuntu 'apt-get install libegl1 libgl1-mesa-dri' (Mesa, works without a GPU),
 on Fedora 'dnf install mesa-libEGL mesa-dri-drivers', or the EGL libraries of your GPU's driver."""
+
+
+@functools.cache
+def _egl():
+    """The library that knows which context is current, None on systems without EGL."""
+    try:
+        egl = ctypes.CDLL("libEGL.so.1")
+    except OSError:
+        return None
+    for function in (egl.eglGetCurrentDisplay, egl.eglGetCurrentSurface, egl.eglGetCurrentContext):
+        function.restype = ctypes.c_void_p
+    egl.eglMakeCurrent.argtypes = [ctypes.c_void_p] * 4
+    return egl
+
+
+@contextlib.contextmanager
+def _current_context_kept():
+    """Give the thread back the context that it had, Blender's say, which moderngl does not do. Without one Blender
+    ends where it frees a program."""
+    egl = _egl()
+    context = egl and egl.eglGetCurrentContext()
+    if not context:
+        yield
+        return
+    display, surfaces = egl.eglGetCurrentDisplay(), [egl.eglGetCurrentSurface(which) for which in _EGL_DRAW_AND_READ]
+    try:
+        yield
+    finally:
+        egl.eglMakeCurrent(display, *surfaces, context)
+
+
+_EGL_DRAW_AND_READ = 0x3059, 0x305A
 
 
 def _context():
@@ -38,7 +72,7 @@ def _in_context(method):
 
     @functools.wraps(method)
     def inside(self, *arguments):
-        with self._context:
+        with _current_context_kept(), self._context:
             return method(self, *arguments)
 
     return inside
@@ -48,19 +82,20 @@ class HeadlessDevice:
     """`Device` on an OpenGL 3.3 context of its own. Raises DeviceError when there is no driver."""
 
     def __init__(self):
-        self._context = _context()
-        info = self._context.info
-        self.name = f"{info['GL_RENDERER']} (OpenGL {info['GL_VERSION']})"
-        self.max_texture_size = int(info["GL_MAX_TEXTURE_SIZE"])
         self._programs = {}
         self._uniforms = None
-        with self._context:
+        with _current_context_kept():
+            self._context = _context()
             self._triangle = self._context.buffer(np.array(FULL_SCREEN_TRIANGLE, np.float32).tobytes())
+            info = self._context.info
+        self.name = f"{info['GL_RENDERER']} (OpenGL {info['GL_VERSION']})"
+        self.max_texture_size = int(info["GL_MAX_TEXTURE_SIZE"])
 
     def close(self):
         """Give back the context and everything that was made in it; the device cannot be used any more."""
         self._programs = {}
-        self._context.release()
+        with _current_context_kept():
+            self._context.release()
 
     @_in_context
     def texture(self, texels):
