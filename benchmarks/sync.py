@@ -59,8 +59,8 @@ def main(thousands):
     for name, mesh in {"sphere, recognized": "MeshUVSphere", "cube": "MeshCube"}.items():
         for iterate in (False, True):
             how = "by the iterator" if iterate else "whole"
-            measure(f"{thousands},000 x {name}, {how}", lambda mesh=mesh: instances(thousands, mesh), iterate)
-    measure(f"{thousands},000 points", lambda: points(thousands))
+            measure(f"{thousands * 1000:,} x {name}, {how}", lambda mesh=mesh: instances(thousands, mesh), iterate)
+    measure(f"{thousands * 1000:,} points", lambda: points(thousands))
     measure("10,000 objects", lambda: objects(10))
     addon.unregister()
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The nodes that read attributes, each as a `Value`: of the key by which the engine knows the attribute."""
+"""The nodes that read attributes, each as an expression: of the key by which the engine knows the attribute."""
 
 from dataclasses import dataclass
 
 from .attributes import key_of, output_of, property_value
-from .values import Value
+from .expressions import Attribute, Constant
 
 #: Outputs of the Attribute and Color Attribute nodes; Cycles' Vector is its Color.
 _OUTPUTS = {"Color": "", "Vector": "", "Fac": "fac", "Alpha": "alpha"}
+_BLACK = Constant((0.0, 0.0, 0.0))
 _SOURCES = {"GEOMETRY": "geometry", "OBJECT": "property", "INSTANCER": "instancer"}
 _OF_OBJECT_INFO = {
     "Location": "location",
@@ -26,8 +27,8 @@ class AttributeNodes:
     material: object
     layers: tuple = ()
 
-    def value(self, source):
-        """The `Value` of a `Source`, None where its node or output is no attribute that can be had."""
+    def read(self, source):
+        """The expression of a `Source`, None where its node or output is no attribute that can be had."""
         read = _NODES.get(source.type)
         return read(self, source) if read else None
 
@@ -35,22 +36,27 @@ class AttributeNodes:
         node, output = source.node, _OUTPUTS[source.output.identifier]
         if node.attribute_type == "VIEW_LAYER":
             value = property_value(self.layers, node.attribute_name)
-            return Value() if value is None else Value(tuple(float(c) for c in output_of(value, output)[:3]))
+            return _BLACK if value is None else Constant(tuple(float(c) for c in output_of(value, output)[:3]))
         if not node.attribute_name:
-            return Value()
-        return Value.of_attribute(key_of(_SOURCES[node.attribute_type], node.attribute_name, output))
+            return _BLACK
+        return _attribute(source, key_of(_SOURCES[node.attribute_type], node.attribute_name, output))
 
     def _color_attribute(self, source):
-        return Value.of_attribute(key_of("geometry", source.node.layer_name, _OUTPUTS[source.output.identifier]))
+        key = key_of("geometry", source.node.layer_name, _OUTPUTS[source.output.identifier])
+        return _attribute(source, key)
 
     def _object_info(self, source):
         output = source.output.identifier
         if output == "Material Index":
-            return Value((float(self.material.pass_index),) * 3)
-        return Value.of_attribute(key_of("object", _OF_OBJECT_INFO[output])) if output in _OF_OBJECT_INFO else None
+            return Constant((float(self.material.pass_index),))
+        return _attribute(source, key_of("object", _OF_OBJECT_INFO[output])) if output in _OF_OBJECT_INFO else None
 
     def _random(self, source):
-        return Value.of_attribute(key_of("random")) if source.output.identifier == "Random" else None
+        return _attribute(source, key_of("random")) if source.output.identifier == "Random" else None
+
+
+def _attribute(source, key):
+    return Attribute(key, is_number=source.output.type == "VALUE")
 
 
 _NODES = {

@@ -14,8 +14,9 @@ Values are rows of 4 float32, colours scene-linear, alpha last. What is not ther
 Blender does.
 """
 
-import bpy
 import numpy as np
+
+from .compat import levels_of_random_ids
 
 #: Of each of Blender's data types: where its values are, their dtype, how many. Cycles knows no others.
 _TYPES = {
@@ -30,8 +31,6 @@ _TYPES = {
     "QUATERNION": ("value", np.float32, 4),
     "FLOAT4": ("vector", np.float32, 4),
 }
-#: From this Blender on the random id of an instance depends on its levels only, not on how many there can be.
-_RANDOM_BY_LEVELS = (5, 0, 0)
 _OF_PRIMITIVES = ("geometry", "random")
 
 
@@ -234,8 +233,8 @@ def instance_random_ids(name, instancer_name, persistent_ids):
     """
     ids = np.full(len(persistent_ids), _hash_string(name), np.uint32)
     numbers = np.asarray(persistent_ids).astype(np.uint32)
-    if bpy.app.version < _RANDOM_BY_LEVELS:
-        numbers = np.pad(numbers, ((0, 0), (0, 8 - numbers.shape[1])), constant_values=0x7FFFFFFF)
+    absent = levels_of_random_ids(numbers.shape[1]) - numbers.shape[1]
+    numbers = np.pad(numbers, ((0, 0), (0, absent)), constant_values=0x7FFFFFFF)
     for number in numbers.T:
         ids = _hash(ids, number)
     return ids ^ _hash(_hash_string(instancer_name), 0) if name != instancer_name else ids

@@ -56,7 +56,7 @@ def _principled(source, reader):
     def number(name):
         return reader.number(source.input(name))
 
-    alpha = number("Alpha")
+    alpha = reader.opacity(source.input("Alpha"))
     lobes = principled(
         reader.color(source.input("Base Color")),
         metallic=number("Metallic"),
@@ -71,9 +71,10 @@ def _principled(source, reader):
     if coat > 0.0:
         tint = Value((coat,) * 3)
         lobes = lobes.plus(dielectric_coat(tint, number("Coat Roughness"), max(number("Coat IOR"), 1.0)))
-    strength = number("Emission Strength")
-    if strength > 0.0:
-        lobes = lobes.plus(Lobes(glow=reader.color(source.input("Emission Color")).times(strength)))
+    strength = reader.constant(source.input("Emission Strength"))
+    if strength is None or strength > 0.0:
+        glow = reader.scaled(source.input("Emission Color"), source.input("Emission Strength"))
+        lobes = lobes.plus(Lobes(glow=glow))
     return lobes if alpha >= 1.0 else Lobes(clear=Value((1.0, 1.0, 1.0))).mixed(lobes, max(alpha, 0.0))
 
 
@@ -129,7 +130,7 @@ def _transparent(source, reader):
 
 
 def _emission(source, reader):
-    return Lobes(glow=reader.color(source.input("Color")).times(reader.number(source.input("Strength"))))
+    return Lobes(glow=reader.scaled(source.input("Color"), source.input("Strength")))
 
 
 def _mix(source, reader):
@@ -141,10 +142,11 @@ def _mix(source, reader):
         # Cycles: the index of refraction of a blend is 1 / (1 - blend).
         blend = min(max(reader.number(factor.input("Blend")), 0.0), 0.99)
         return first.mixed_by_fresnel(second, 1.0 / (1.0 - blend))
-    if factor.node is not None and factor.type not in ("VALUE", "RGB", "LIGHT_PATH"):
+    share = reader.constant(factor)
+    if share is None:
         reader.not_understood(factor, "half of each shader")
-        return first.mixed(second, 0.5)
-    return first.mixed(second, min(max(reader.number(factor), 0.0), 1.0))
+        share = 0.5
+    return first.mixed(second, min(max(share, 0.0), 1.0))
 
 
 def _add(source, reader):

@@ -7,6 +7,9 @@ import bpy
 #: warning.
 _ALWAYS_NODES = (5, 0, 0)
 _LIGHTS_ALWAYS_NODES = (5, 2, 0)
+#: From this on the random id of an instance depends on its levels only.
+_RANDOM_BY_LEVELS = (5, 0, 0)
+_LEVELS = 8
 
 
 def node_tree(owner):
@@ -41,3 +44,8 @@ def _area(light):
 def has_geometry_sets():
     """Whether the evaluated geometry of an object, instances and all, can be read as a whole (from 4.5 on)."""
     return hasattr(bpy.types.Object, "evaluated_geometry")
+
+
+def levels_of_random_ids(levels):
+    """How many levels of an instance's persistent id its random id is made of, of those that it has."""
+    return levels if bpy.app.version >= _RANDOM_BY_LEVELS else max(levels, _LEVELS)

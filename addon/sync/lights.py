@@ -30,7 +30,8 @@ class Lights:
     def add(self, obj, matrix):
         """Add the light of a Blender object that stands in the world by `matrix` (4, 4)."""
         light = obj.data
-        color = np.multiply(light_factor(light), self._strength(light))
+        strength, falls_off = self._emission(light)
+        color = np.multiply(light_factor(light), strength)
         if not np.isfinite([*matrix.ravel(), light.energy, *color]).all():
             self._reports.warn(f"light {obj.name!r} has a strength or a place that is not finite and gives no light")
             return
@@ -44,7 +45,9 @@ class Lights:
             self._note_soft(obj, light.angle)
             return
         watts = light.energy * (_AREA_AHEAD if light.type == "AREA" else 1.0)
-        self._scene.add_light(Light.point(position, watts, color, shadow=light.use_shadow))
+        made = Light.point(position, watts, color, shadow=light.use_shadow)
+        # One that does not fall off is as bright everywhere as the other at distance 1.
+        self._scene.add_light(made if falls_off else Light.constant(position, made.color, shadow=made.shadow))
         if light.type in _AS_POINT:
             self._as_point.setdefault(light.type, {})[obj.name] = None
         if light.type != "AREA":
@@ -57,20 +60,23 @@ class Lights:
         if self._soft:
             self._reports.info(f"light {_first_of(self._soft)}: the size of a light is not rendered, shadows are sharp")
 
-    def _strength(self, light):
-        """What the light's nodes multiply its energy by: colour times strength of an Emission."""
+    def _emission(self, light):
+        """What the light's nodes multiply its energy by, color times strength of an Emission, and whether the light
+        falls off with the distance."""
         tree = node_tree(light)
         surface = output_source(tree, "Surface") if tree is not None else None
         if surface is None or surface.node is None:
-            return (1.0, 1.0, 1.0) if tree is None else (0.0, 0.0, 0.0)
+            return ((1.0, 1.0, 1.0) if tree is None else (0.0, 0.0, 0.0)), True
         reader = NodeReader(f"light {light.name!r}", None, self._reports)
-        strength = (1.0, 1.0, 1.0)
-        if surface.type in ("EMISSION", "ADD_SHADER", "MIX_SHADER"):
+        strength, falls_off = (1.0, 1.0, 1.0), True
+        if surface.type == "EMISSION" and _is_falloff(surface.input("Strength"), light):
+            strength, falls_off = _with_falloff(surface, reader)
+        elif surface.type in ("EMISSION", "ADD_SHADER", "MIX_SHADER"):
             strength = read_closure(surface, reader).glow.average
         else:
             reader.not_understood(surface, "the light's own color")
         reader.finish()
-        return strength
+        return strength, falls_off
 
     def _seen_angle(self, position, size):
         """The angle under which the camera sees something of `size`."""
@@ -80,6 +86,22 @@ class Lights:
     def _note_soft(self, obj, angle):
         if angle > _SHARP and obj.data.use_shadow and obj.data.energy > 0.0:
             self._soft[obj.name] = None
+
+
+def _is_falloff(source, light):
+    """Whether a strength is that of a Light Falloff node, constant or quadratic, of a light that stands somewhere."""
+    return (
+        source.type == "LIGHT_FALLOFF" and source.output.identifier in ("Constant", "Quadratic") and light.type != "SUN"
+    )
+
+
+def _with_falloff(emission, reader):
+    """(strength (3,), whether it falls off) of an Emission whose strength is that of a Light Falloff node."""
+    falloff = emission.input("Strength")
+    if reader.number(falloff.input("Smooth")) > 0.0:
+        reader.warn(f"node {falloff.node.name!r}: its smoothing is not rendered")
+    strength = reader.color(emission.input("Color")).times(reader.number(falloff.input("Strength")))
+    return strength.average, falloff.output.identifier == "Quadratic"
 
 
 def _first_of(names):

@@ -51,6 +51,7 @@ def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report, sp
         statistics.objects |= objects.read()
     with timed(statistics.seconds, "place"):
         objects.place()
+        shadings.finish()
     lights.finish()
     return scene
 

@@ -12,6 +12,7 @@ from .closures import principled, read_closure
 from .compat import has_geometry_sets, node_tree
 from .keys import original_key
 from .lobes import Lobes
+from .made_attributes import attributes_of, make_attributes
 from .nodes import output_source
 from .textures import NodeReader
 from .values import Value
@@ -23,7 +24,7 @@ DEFAULT = Material()  # Blender's grey, for a slot without material
 @dataclass(frozen=True)
 class Shading:
     """A material of the scene: its number, the `UvSource` of its images, None where it has none, whether light goes
-    through it, and the keys of its attributes (see `attributes`)."""
+    through it, and the keys of the attributes of Blender's data that it needs (see `attributes`)."""
 
     index: int
     uv: object = None
@@ -42,6 +43,7 @@ class Shadings:
         self._scene, self._images, self._reports, self._layers = scene, images, reports, layers
         self._by_key = {}
         self._sheets = {}
+        self._made, self._opacities = {}, []
 
     def of(self, material):
         """The `Shading` of a Blender material, or of None: an empty slot, or one whose material was deleted."""
@@ -59,6 +61,12 @@ class Shadings:
             self._sheets[shading.index] = replace(shading, index=self._scene.add_material(material))
         return self._sheets[shading.index]
 
+    def finish(self):
+        """Once all objects stand in the scene: make the attributes that materials compute from those of the data."""
+        sheets = {number: (number, sheet.index) for number, sheet in self._sheets.items()}
+        opacities = [(alpha, name, sheets.get(number, (number,))) for alpha, name, number in self._opacities]
+        make_attributes(self._scene, self._made, opacities, self._reports)
+
     def _read(self, material):
         if material is None:
             return Shading(self._scene.add_material(DEFAULT))
@@ -66,18 +74,21 @@ class Shadings:
         reader = NodeReader(f"material {material.name!r}", self._images, self._reports, attributes=attributes)
         read = read_material(material, reader)
         reader.finish()
-        keys = _attributes_of(read)
+        index = self._scene.add_material(read)
+        self._made |= reader.made
+        self._opacities += [(alpha, material.name, index) for alpha in reader.opacities]
+        keys = _needed(attributes_of(read), reader)
         if any(parts_of(key)[0] == "instancer" for key in keys) and not has_geometry_sets():
             reader.warn(
                 "attributes of instances are rendered from Blender 4.5 on; properties of objects are used instead"
             )
-        return Shading(self._scene.add_material(read), reader.uv, material.name, max(read.transmit) > 0.0, keys)
+        return Shading(index, reader.uv, material.name, max(read.transmit) > 0.0, keys)
 
 
-def _attributes_of(material):
-    """The keys of the attributes of an engine Material, sorted."""
-    keys = {getattr(material, f"{color}_attribute") for color in ("diffuse", "reflect", "transmit", "glow")}
-    return tuple(sorted(keys - {""}))
+def _needed(keys, reader):
+    """The keys, sorted, of the attributes of the data from which those of a material are made."""
+    expressions = [*reader.opacities, *(reader.made[key] for key in keys if key in reader.made)]
+    return tuple(sorted({key for key in keys if key not in reader.made}.union(*(e.keys for e in expressions))))
 
 
 def read_material(material, reader):

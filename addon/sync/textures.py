@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers and colours that feed a shader: constants, images, attributes, and the few nodes that keep them such."""
+"""Numbers and colours that feed a shader: constants, images, attributes, and what value nodes make of them."""
 
 from dataclasses import dataclass
 from math import cos, sin
 
 import numpy as np
 
+from .expressions import Constant, Made, made
+from .value_nodes import ValueNodes, chosen_item, constant
 from .values import Value
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -36,14 +38,17 @@ class NodeReader:
 
     `images` (an `Images`) may be None where only the uv is wanted: no image is then read. `attributes`: the
     `AttributeNodes` of a material, None where there are no attributes. `panorama`: colours are looked up by
-    direction, as in a world. Once all is read, `finish` sends the rest of the reports.
+    direction, as in a world. Once all is read, `finish` sends the rest of the reports; `made` has the expressions of
+    colours by their key, `opacities` those that are taken as 1.
     """
 
     def __init__(self, user, images, reports, *, attributes=None, panorama=False):
         self.user, self._images, self._reports = user, images, reports
-        self._attributes, self._panorama = attributes, panorama
+        self._panorama = panorama
+        self._values = ValueNodes(attributes, self.not_understood)
         self._replaced = {}
         self.uv = None
+        self.made, self.opacities = {}, []
 
     def warn(self, message):
         self._reports.warn(f"{self.user}: {message}")
@@ -65,44 +70,58 @@ class NodeReader:
 
     def number(self, source):
         """The number that feeds a socket; where it varies over the surface, the socket's own value, reported."""
-        if source.node is None:
-            return _mean(source.constant)
-        if source.type == "VALUE":
-            return float(source.output.default_value)
-        if source.type == "RGB":
-            return _mean(source.output.default_value)
-        if source.type == "LIGHT_PATH":
-            seen = 1.0 if source.output.identifier == "Is Camera Ray" else 0.0
-            self.not_understood(source, "what the camera sees")
-            return seen
-        attribute = self._attribute(source)
-        if attribute is not None and not attribute.varies:
-            return _mean(attribute.rgb)
+        found = self.constant(source)
+        if found is not None:
+            return found
         own = _mean(source.constant)
         self.not_understood(source, f"the value {own:.3g} of {source.socket.name}")
         return own
 
+    def constant(self, source):
+        """The number that feeds a socket; None where it varies over the surface."""
+        found = self._values.read(source, is_number=True)
+        return found.value[0] if isinstance(found, Constant) else None
+
+    def opacity(self, source):
+        """The alpha that feeds a socket. One made from attributes is taken as 1: see `opacities`."""
+        found = self._values.read(source, is_number=True)
+        if found is None or isinstance(found, Constant):
+            return self.number(source)
+        self.opacities.append(found)
+        return 1.0
+
     def color(self, source):
-        """The `Value` that feeds a colour socket."""
-        if source.node is None:
-            return _constant(source.constant)
-        if source.type in ("RGB", "VALUE"):
-            return _constant(source.output.default_value)
+        """The `Value` that feeds a color socket."""
+        found = self._values.read(source)
+        if found is not None:
+            return self._value(found)
         if source.type == "TEX_IMAGE" or (source.type == "TEX_ENVIRONMENT" and self._panorama):
             return self._image(source)
         if source.type == "AMBIENT_OCCLUSION":
-            self.not_understood(source, "its color without occlusion")
-            shown = source.output.identifier == "Color"
-            return self.color(source.input("Color")) if shown else Value((1.0, 1.0, 1.0))
-        read = self._mixed(source) if source.type in ("MIX", "MIX_RGB") else self._attribute(source)
+            return self.color(source.input("Color"))
+        if source.type == "MENU_SWITCH" and (chosen := chosen_item(source)) is not None:
+            return self.color(chosen)
+        read = self._mixed(source) if source.type in ("MIX", "MIX_RGB") else None
         if read is not None:
             return read
         own = _constant(source.constant)
         self.not_understood(source, f"the socket's own color {_shown(own.rgb)} for {source.socket.name}")
         return own
 
-    def _attribute(self, source):
-        return self._attributes.value(source) if self._attributes is not None else None
+    def scaled(self, color, factor):
+        """The `Value` of a color socket times the number that feeds another."""
+        found = self._values.read(factor, is_number=True), self._values.read(color)
+        if None in found or isinstance(found[0], Constant):
+            return self.color(color).times(self.number(factor))
+        return self._value(made(np.multiply, (), found))
+
+    def _value(self, expression):
+        """The `Value` of an expression."""
+        if isinstance(expression, Constant):
+            return Value(tuple(np.broadcast_to(expression.value, 3).tolist()))
+        if isinstance(expression, Made):
+            self.made[expression.key] = expression
+        return Value.of_attribute(expression.key)
 
     def _image(self, source):
         if source.output.identifier == "Alpha":
@@ -208,11 +227,7 @@ def _rotation(angles):
 
 def _constant(value):
     """The `Value` of a socket's default: a colour, a vector or a number."""
-    if value is None:
-        return Value()
-    if isinstance(value, (int, float)):
-        return Value((float(value),) * 3)
-    return Value(tuple(float(c) for c in value)[:3])
+    return Value(tuple(np.broadcast_to(constant(value).value, 3).tolist()))
 
 
 def _mean(value):

@@ -13,7 +13,7 @@ _EPSILON = np.finfo(np.float32).eps
 
 def as_number(is_color, x):
     """What Blender makes of a colour or vector (..., 3) that is linked to a number."""
-    return (x @ _LUMINANCE.astype(x.dtype))[..., None] if is_color else x.mean(axis=-1, keepdims=True)
+    return (colors(x) @ _LUMINANCE.astype(x.dtype))[..., None] if is_color else x.mean(axis=-1, keepdims=True)
 
 
 def component(i, x):
@@ -78,7 +78,7 @@ def _ping_pong(a, b):
 
 
 def _smooth_minimum(a, b, width):
-    h = np.maximum(divided(width - np.abs(a - b), width), 0.0)
+    h = divided(np.maximum(width - np.abs(a - b), 0.0), width)
     return np.minimum(a, b) - h**3 * width / 6.0
 
 
@@ -168,13 +168,13 @@ def _of_components(operation):
     return lambda a, b, c, scale: MATH[operation](a, b, c)
 
 
+_BY_COMPONENT = (
+    *("ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "POWER", "ABSOLUTE", "SIGN", "MINIMUM", "MAXIMUM"),
+    *("FLOOR", "CEIL", "ROUND", "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT"),
+)
 #: By the operation of the Vector Math node; each takes three vectors and the scale.
 VECTOR_MATH = {
-    **{
-        name: _of_components(name)
-        for name in ("ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "ABSOLUTE", "MINIMUM", "MAXIMUM")
-        + ("FLOOR", "CEIL", "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT", "POWER", "SIGN", "ROUND")
-    },
+    **{name: _of_components(name) for name in _BY_COMPONENT},
     "FRACTION": _of_components("FRACT"),
     "CROSS_PRODUCT": _of_two(np.cross),
     "PROJECT": _of_two(lambda a, b: divided(_dot(a, b), _dot(b, b)) * b),
@@ -286,7 +286,9 @@ def to_hsv(color):
 
 def _pure(hue):
     """The colours (..., 3) of full saturation and value of a hue."""
-    return clamped(np.stack([np.abs(hue * 6.0 - 3.0) - 1.0, 2.0 - np.abs(hue * 6.0 - 2.0), 2.0 - np.abs(hue * 6.0 - 4.0)], axis=-1))
+    return clamped(
+        np.stack([np.abs(hue * 6.0 - 3.0) - 1.0, 2.0 - np.abs(hue * 6.0 - 2.0), 2.0 - np.abs(hue * 6.0 - 4.0)], axis=-1)
+    )
 
 
 def from_hsv(color):

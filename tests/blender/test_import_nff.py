@@ -1,7 +1,5 @@
 """File > Import > Neutral File Format: what the sync makes of the imported objects is what the engine reads itself."""
 
-from dataclasses import replace
-
 import bpy
 import numpy as np
 import pytest
@@ -198,13 +196,25 @@ def test_highlight_that_is_a_dot_is_left_out(imports):
     assert_same_material(material, Material(diffuse=0.5, reflect=0.5, fresnel=False))
 
 
-@pytest.mark.parametrize("fades", [False, True])
-def test_lights_are_right_in_the_middle_of_the_scene(imports, fades):
-    imports(HEAD + "l -4 0 3 2 0.5 0\n" + RED + "s 1 1 1 1\ns -1 -1 -1 1\n", use_falloff=fades)
+LIGHTS = "l -4 0 3 2 0.5 0\n" + RED + "s 1 1 1 1\ns -1 -1 -1 1\n"
+
+
+def test_lights_are_the_files(imports):
+    file = imports(HEAD + LIGHTS)
+    synced = sync()
+    for light, wanted in zip(synced.scene.lights, file.scene.lights, strict=True):
+        assert light.kind == wanted.kind == LightKind.CONSTANT and light.shadow == wanted.shadow
+        np.testing.assert_allclose(light.position, wanted.position, rtol=1e-6)
+        np.testing.assert_allclose(light.color, wanted.color, rtol=1e-5)
+    assert not synced.messages
+
+
+def test_lights_that_fade_are_right_in_the_middle_of_the_scene(imports):
+    imports(HEAD + LIGHTS, use_falloff=True)
     lights = sync().scene.lights
+    assert {light.kind for light in lights} == {LightKind.POINT}
     np.testing.assert_allclose([light.position for light in lights], [(5, -6, 7), (-4, 0, 3)], rtol=1e-6)
-    falls = [np.dot(light.position, light.position) if light.kind == LightKind.POINT else 1.0 for light in lights]
-    seen = np.divide([light.color for light in lights], np.reshape(falls, (2, 1)))
+    seen = [np.divide(light.color, np.dot(light.position, light.position)) for light in lights]
     np.testing.assert_allclose(seen, [(0.5**0.5,) * 3, (2.0, 0.5, 0.0)], rtol=1e-5)
 
 
@@ -299,10 +309,8 @@ def test_several_files_have_a_collection_each(tmp_path):
 @pytest.mark.parametrize("make", [lambda: balls(2), lambda: mount(3), lambda: tree(3)], ids=["balls", "mount", "tree"])
 @pytest.mark.parametrize("limit", [1000, 1])
 def test_pictures_are_those_of_the_file(imports, make, limit):
-    """With the file's own lights: how those are rendered is the sync's affair."""
     file = imports(make(), object_limit=limit)
-    scene = replace(sync(64, 64).scene, lights=file.scene.lights)
-    found, wanted = (render(each, 64, 64).pixels[..., :3] for each in (scene, file.scene))
+    found, wanted = (render(each, 64, 64).pixels[..., :3] for each in (sync(64, 64).scene, file.scene))
     error = np.abs(found - wanted).max(axis=-1)
     assert np.ptp(wanted) > 0.3, "the picture shows something"
     assert (error > 0.02).mean() < 0.01  # single pixels on edges, and mirrored ones

@@ -262,32 +262,46 @@ def paint(tree, to, name="paint"):
     node(tree, "Attribute", to, output="Color").attribute_name = name
 
 
-def test_attribute_times_a_constant_and_an_image():
+def test_attribute_times_an_image():
     def build(tree, output):
         first, second = mixed(tree, output, "MULTIPLY")
         paint(tree, first)
         node(tree, "TexImage", second).image = image(np.full((2, 2, 4), 0.5), float_buffer=True)
 
-    def build_constant(tree, output):
-        first, second = mixed(tree, output, "MULTIPLY", 0.75)
-        first.default_value = (0.2, 0.4, 0.6, 1.0)
-        paint(tree, second)
-
     read, made, messages = shading(build)
     assert read.diffuse_attribute == "geometry:paint" and read.diffuse_image == 0 and read.diffuse == (1.0,) * 3
     assert made.uv is not None and not messages
-    read, _, messages = shading(build_constant)  # a quarter of it is the color itself, which is added to the rest
-    assert read.diffuse_attribute == "geometry:paint" and len(messages) == 1 and "image or attribute" in messages[0]
 
 
-def test_two_attributes_are_not_multiplied():
+def test_attribute_plus_an_image_is_reported():
+    def build(tree, output):
+        first, second = mixed(tree, output, "ADD")
+        paint(tree, first)
+        node(tree, "TexImage", second).image = image(np.full((2, 2, 4), 0.5), float_buffer=True)
+
+    _, _, messages = shading(build)
+    assert len(messages) == 1 and "image or attribute" in messages[0]
+
+
+def test_factor_zero_leaves_the_attribute_itself():
+    def build(tree, output):
+        first, _ = mixed(tree, output, "MULTIPLY", 0.0)
+        paint(tree, first)
+
+    read, made, messages = shading(build)
+    assert read.diffuse_attribute == "geometry:paint" == made.attributes[0] and not messages
+
+
+def test_two_attributes_are_multiplied():
     def build(tree, output):
         first, second = mixed(tree, output, "MULTIPLY")
         paint(tree, first)
         paint(tree, second, "other")
 
-    _, made, messages = shading(build)
-    assert made.attributes == () and len(messages) == 1 and "'Mix'" in messages[0]
+    read, made, messages = shading(build)
+    assert made.attributes == ("geometry:other", "geometry:paint") and not messages
+    again, *_ = shading(build)
+    assert read.diffuse_attribute == again.diffuse_attribute and read.diffuse_attribute.startswith("made:")
 
 
 def test_attribute_through_groups_and_reroutes():

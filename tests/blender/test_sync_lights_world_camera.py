@@ -88,6 +88,28 @@ def test_light_nodes():
     assert sync().scene.lights[0].color == pytest.approx((2.0, 1.0, 0.5))
 
 
+@pytest.mark.parametrize("output", ("Constant", "Quadratic", "Linear"))
+def test_falloff(output):
+    """Radiance of a white plane that faces the lamp, by the formulas of Cycles' Light Falloff node."""
+    add_camera()
+    data = bpy.data.lights.new("lamp", "POINT")
+    data.energy, data.color = 80.0, (1.0, 0.5, 0.25)
+    if bpy.app.version < (5, 2, 0):
+        data.use_nodes = True
+    emission = next(n for n in data.node_tree.nodes if n.type == "EMISSION")
+    emission.inputs["Color"].default_value = (1.0, 0.5, 1.0, 1.0)
+    node(data.node_tree, "LightFalloff", emission.inputs["Strength"], output, Strength=0.5)
+    link(data, "lamp", location=(0.0, 0.0, 3.0))
+    synced = sync()
+    (made,) = synced.scene.lights
+    if output == "Linear":
+        assert made.kind == LightKind.POINT and synced.warnings("'lamp'", "'Light Falloff'")
+        return
+    assert made.kind == (LightKind.CONSTANT if output == "Constant" else LightKind.POINT)
+    assert made.color == pytest.approx([80.0 * 0.5 * c / (4.0 * np.pi**2) for c in (1.0, 0.25, 0.25)])
+    assert made.position == (0.0, 0.0, 3.0) and not synced.messages
+
+
 def test_soft_lights_are_named_in_one_message():
     add_camera()
     for name in "abc":

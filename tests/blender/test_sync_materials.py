@@ -350,3 +350,64 @@ def test_mapping_of_normals_is_reported():
 
     _, synced = shaded(build)
     assert len(synced.warnings("'Mapping'", "its mapping is left out")) == 1
+
+
+def computed(build):
+    """The glow of an emission whose strength `build(tree, socket)` feeds, and the messages."""
+
+    def whole(tree, output):
+        build(tree, node(tree, "Emission", output.inputs["Surface"], Color=(1.0, 0.5, 0.25, 1.0)).inputs["Strength"])
+
+    read, synced = shaded(whole)
+    return read.glow, synced.messages
+
+
+def test_nodes_with_constants_are_constants():
+    def build(tree, socket):
+        made = node(tree, "Math", socket)
+        made.operation = "POWER"
+        made.inputs[1].default_value = 3.0
+        clamp = node(tree, "Clamp", made.inputs[0], Value=7.0, Max=2.0)
+        node(tree, "CombineXYZ", clamp.inputs["Value"], X=6.0, Y=6.0, Z=9.0)
+
+    glow, messages = computed(build)
+    assert glow == pytest.approx((8.0, 4.0, 2.0)) and not messages
+
+
+def test_a_color_is_as_bright_as_its_luminance():
+    def build(tree, socket):
+        node(tree, "RGB", socket).outputs[0].default_value = (1.0, 0.5, 0.0, 1.0)
+
+    glow, messages = computed(build)
+    assert glow[0] == pytest.approx(0.2126 + 0.5 * 0.7152, rel=1e-4) and not messages
+
+
+@pytest.mark.skipif(not hasattr(bpy.types, "GeometryNodeMenuSwitch"), reason="a node of later Blenders")
+@pytest.mark.parametrize("item", ("Plain", "Shaded"))
+def test_menu_switch_takes_its_item(item):
+    def build(tree, output):
+        diffuse = node(tree, "BsdfDiffuse", output.inputs["Surface"])
+        switch = tree.nodes.new("GeometryNodeMenuSwitch")
+        switch.data_type = "RGBA"
+        switch.enum_items.clear()
+        for name in ("Plain", "Shaded"):
+            switch.enum_items.new(name)
+        switch.inputs["Menu"].default_value = item
+        switch.inputs["Plain"].default_value = (0.1, 0.2, 0.3, 1.0)
+        occlusion = node(tree, "AmbientOcclusion", switch.inputs["Shaded"])
+        node(tree, "TexImage", occlusion.inputs["Color"]).image = image(np.ones((2, 2, 4)))
+        tree.links.new(switch.outputs[0], diffuse.inputs["Color"])
+
+    add_camera()
+    made, tree, output = material("stuff")
+    try:
+        build(tree, output)
+    except RuntimeError:
+        pytest.skip("this Blender has no Menu Switch among its shader nodes")
+    quad().data.materials.append(made)
+    synced = sync()
+    (read,) = synced.scene.materials
+    if item == "Plain":
+        assert read.diffuse == pytest.approx((0.1, 0.2, 0.3)) and read.diffuse_image == -1 and not synced.messages
+    else:
+        assert read.diffuse_image == 0 and len(synced.warnings("'Ambient Occlusion'")) == 1 == len(synced.messages)

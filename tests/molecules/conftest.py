@@ -1,8 +1,6 @@
-"""These run where the add-on Molecular Nodes is installed: `tools/setup molecules`, .venvs/molecules/bin/python."""
+"""These run where the add-on Molecular Nodes is: `tools/setup molecules`, .venvs/molecules/bin/python -m pytest."""
 
 import pytest
-
-pytest.importorskip("molecularnodes", reason="Molecular Nodes is not installed", exc_type=ImportError)
 
 
 @pytest.fixture(autouse=True)

@@ -1,12 +1,13 @@
 """The styles of Molecular Nodes: what Conic takes them as, and the same picture as Cycles', atom by atom."""
 
 import bpy
-import MDAnalysisTests.datafiles as files
 import numpy as np
 import pytest
 
 from addon import statistics
 from tests.molecules.building import EXACT, flat_paint, grown, load, look_at, positions_of, rendered, set_style
+
+files = pytest.importorskip("MDAnalysisTests.datafiles", reason="Molecular Nodes is not installed")
 
 SIZE = 320
 

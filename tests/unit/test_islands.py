@@ -106,8 +106,8 @@ def test_an_island_whose_color_changes_around_the_axis_stays_triangles():
 
 
 def test_a_tube_far_longer_than_the_first_is_a_cylinder_too():
-    short = moved(tube(), np.diag([0.03, 0.03, 0.1]), (3.0, 4.0, 5.0))
-    long = moved(tube(), turned(np.random.default_rng(4)) @ np.diag([0.03, 0.03, 8.0]), (3.0, 4.0, 5.0))
+    short = moved(tube(), np.diag([0.03, 0.03, 0.05]), (20.0, 10.0, 5.0))
+    long = moved(tube(), turned(np.random.default_rng(4)) @ np.diag([0.03, 0.03, 8.0]), (20.0, 10.0, 5.0))
     assert not find_islands(joined(short, long)).rest.any()
 
 
