@@ -8,6 +8,8 @@ import sys
 import time
 from dataclasses import dataclass, field
 
+from .wording import counted, plural
+
 #: What the stages of a picture are called, in their order.
 STAGES = {
     "read": "read",
@@ -77,18 +79,6 @@ def peak_memory():
 
 
 # Numbers as text
-
-
-def counted(count, noun):
-    """`1 sphere`, `66,430 spheres`."""
-    return f"{count:,} {plural(noun, count)}"
-
-
-def plural(noun, count=2):
-    """`sphere`, or `spheres` where there is not just one."""
-    if count == 1:
-        return noun
-    return f"{noun[:-1]}ies" if noun.endswith("y") else f"{noun}s"
 
 
 def bytes_text(count):

@@ -36,7 +36,7 @@ def place(placed, plan, materials, origin):
     for p in placed:
         block = matrices[start : start + len(p)]
         block[:] = p.matrices
-        if plan.number(p.geometry) == 0:  # the world's shapes are relative to the origin themselves
+        if plan.in_world[plan.number(p.geometry)]:  # its primitives are relative to the origin themselves
             block[:, :3, 3] += block[:, :3, :3] @ origin
         block[:, :3, 3] -= origin
         start += len(p)

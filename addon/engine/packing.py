@@ -66,12 +66,12 @@ def _check_matrices(scene):
             )
 
 
-def scene_origin(scene):
+def _origin(scene, plan):
     """The point (3,) that positions are taken relative to: the camera's, rounded to a grid much coarser than the
     distances to what is near it. It is exactly 0 for scenes around 0, stays put while the camera moves, and does not
     mind single things that lie far off."""
     eye = np.asarray(scene.camera.matrix, np.float64)[:3, 3]
-    places = _sampled_places(scene)
+    places = _sampled_places(plan)
     if not len(places):
         return np.zeros(3)
     distance = float(np.quantile(np.linalg.norm(places - eye, axis=1), 0.25, method="lower"))
@@ -79,14 +79,18 @@ def scene_origin(scene):
     return np.round(eye / grid) * grid
 
 
-def _sampled_places(scene, most=1000):
-    """Where things are, (n, 3): the middle of at most `most` primitives of a kind, the origin of as many instances."""
+def _sampled_places(plan, most=1000):
+    """Where things are, (n, 3): the middle of about `most` primitives of a kind in world space, the origin of as many
+    instances of other geometries."""
     places = [np.zeros((0, 3))]
-    for _, part in scene.shapes.kinds():
-        lower, upper = part.take(_spread(len(part), most)).bounds()
-        places.append((lower + upper) / 2.0)
-    if scene.instances:
-        stands = np.concatenate([placed.matrices[:, :3, 3] for placed in scene.instances])
+    in_world = np.flatnonzero(plan.in_world)
+    for number in in_world:
+        for _, part in plan.geometries[number].kinds():
+            lower, upper = part.take(_spread(len(part), -(-most // len(in_world)))).bounds()
+            places.append((lower + upper) / 2.0)
+    stands = [p.matrices[:, :3, 3] for p in plan.placed if not plan.in_world[plan.number(p.geometry)]]
+    if stands:
+        stands = np.concatenate(stands)
         places.append(stands[_spread(len(stands), most)])
     return np.concatenate(places)
 
@@ -106,7 +110,7 @@ class _Packer:
         _check_matrices(scene)
         self.materials = MaterialTable(scene, self.plan)
         check_image(scene, scene.world.image, "the world")
-        self.origin = scene_origin(scene)
+        self.origin = _origin(scene, self.plan)
         self.textures, self.frame, self.warnings = {}, {}, []
 
     def pack(self):

@@ -13,6 +13,7 @@ from .errors import SceneError
 from .primitives import BY_KIND
 
 _INSTANCE = layout.KINDS.index("instance")
+_IDENTITY = np.eye(4)
 
 #: Where planes stand in the directory of attributes, (geometry number, kind number): in world space.
 PLANE_ATTRIBUTES = (0, layout.KINDS.index("plane"))
@@ -23,12 +24,14 @@ class Plan:
     """Where records lie. G geometries, K kinds of primitives, both by number.
 
     `geometries`: those with primitives once each, number 0 is the world's shapes, also where there are none. `placed`:
-    the `Instances` that show something. `counts`, `bases` (G, K) int64: number of primitives, index of the first
-    among the records of its kind. `attributes`: an `AttributePlan`.
+    the `Instances` that show something. `in_world` (G,) bool: those whose own space is the world's, the shapes and what
+    stands there once by the identity. `counts`, `bases` (G, K) int64: number of primitives, index of the first among
+    the records of its kind. `attributes`: an `AttributePlan`.
     """
 
     geometries: list
     placed: list
+    in_world: np.ndarray
     counts: np.ndarray
     bases: np.ndarray
     attributes: "AttributePlan"
@@ -125,7 +128,9 @@ def make_plan(scene):
         for label, part in geometry.kinds():
             row[label] = len(part)
     bases = np.cumsum(counts, axis=0) - counts
-    plan = Plan(geometries, placed, counts, bases, None)
+    plan = Plan(geometries, placed, np.arange(len(geometries)) == 0, counts, bases, None)
+    for p in placed:
+        plan.in_world[plan.number(p.geometry)] |= len(p) == 1 and np.array_equal(p.matrices[0], _IDENTITY)
     plan.attributes = _plan_attributes(scene, plan)
     return plan
 

@@ -56,7 +56,7 @@ class TreePacker:
         """Build the tree of a geometry and write its records, and its attributes into `attribute_texels` (n, 4)."""
         geometry = self.plan.geometries[number]
         parts = dict(geometry.kinds())
-        move = self._move if number == 0 else None
+        move = self._move if self.plan.in_world[number] else None
         with timed(self.seconds, "bounds"):
             lower, upper = _bounds(parts.values(), move)
             labels = np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])

@@ -9,6 +9,7 @@ from bpy_extras.io_utils import ImportHelper
 
 from ..engine.errors import SceneError
 from ..engine.nff import read_nff
+from ..wording import counted
 from . import nff_scene
 from .nff_materials import Materials
 from .nff_shapes import Shapes
@@ -113,7 +114,7 @@ class IMPORT_SCENE_OT_nff(ImportHelper, bpy.types.Operator):
         counts.pop("triangle", None)
         counts["polygon"] = sum(map(len, file.polygons))
         counts["light"] = len(file.scene.lights) if self.use_lights else 0
-        told = ", ".join(f"{count:,} {kind}{'s' * (count != 1)}" for kind, count in counts.items() if count)
+        told = ", ".join(counted(count, kind) for kind, count in counts.items() if count)
         if counts["light"]:
             told += "; the lights "
             told += "are as bright as in the file in the middle of the scene" if self.use_falloff else "do not fade"

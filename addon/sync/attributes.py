@@ -17,20 +17,10 @@ Blender does.
 import numpy as np
 
 from .compat import levels_of_random_ids
+from .raw_attributes import TYPES, read_corner_vertices, values_of
 
-#: Of each of Blender's data types: where its values are, their dtype, how many. Cycles knows no others.
-_TYPES = {
-    "FLOAT": ("value", np.float32, 1),
-    "INT": ("value", np.int32, 1),
-    "INT8": ("value", np.int8, 1),
-    "BOOLEAN": ("value", bool, 1),
-    "FLOAT2": ("vector", np.float32, 2),
-    "FLOAT_VECTOR": ("vector", np.float32, 3),
-    "FLOAT_COLOR": ("color", np.float32, 4),
-    "BYTE_COLOR": ("color", np.float32, 4),
-    "QUATERNION": ("value", np.float32, 4),
-    "FLOAT4": ("vector", np.float32, 4),
-}
+#: Types of attributes that Cycles knows.
+_KNOWN = TYPES.keys() - {"INT32_2D"}
 _OF_PRIMITIVES = ("geometry", "random")
 
 
@@ -58,14 +48,13 @@ def read_attribute(data, name, output=""):
     first, of all else the mean of three.
     """
     attribute = data.attributes.get(name or getattr(data.attributes, "default_color_name", ""))
-    if attribute is None or attribute.data_type not in _TYPES:
+    if attribute is None or attribute.data_type not in _KNOWN:
         return None
-    member, dtype, width = _TYPES[attribute.data_type]
-    read = np.empty((len(attribute.data), width), dtype)
-    attribute.data.foreach_get(member, read.reshape(-1))
-    if dtype is np.float32 and not (finite := np.isfinite(read)).all():
+    read = values_of(attribute)
+    read = read[:, None] if read.ndim == 1 else read
+    if read.dtype == np.float32 and not (finite := np.isfinite(read)).all():
         read[~finite] = 0.0
-    if output == "fac" and width == 2:
+    if output == "fac" and read.shape[1] == 2:
         read = read[:, :1]
     return output_of(_as_color(read), output), attribute.domain
 
@@ -99,14 +88,8 @@ def of_triangles(mesh, keys, corners, faces):
         elif domain == "FACE":
             found[key] = values[faces][:, None]
         elif domain == "POINT":
-            found[key] = values[_corner_vertices(mesh)[corners]]
+            found[key] = values[read_corner_vertices(mesh)[corners]]
     return found
-
-
-def _corner_vertices(mesh):
-    vertices = np.empty(len(mesh.loops), np.int32)
-    mesh.attributes[".corner_vert"].data.foreach_get("value", vertices)
-    return vertices
 
 
 def of_mesh(mesh, keys):
@@ -122,20 +105,20 @@ def of_mesh(mesh, keys):
 def of_points(cloud, keys):
     """The attributes of the points of a point cloud by key, (n, 1, 4)."""
     found = {key: values[:, None] for key, values, domain in _read(cloud, keys) if domain == "POINT"}
-    return found | _randoms(keys, len(cloud.points))
+    return found | {key: values[:, None] for key, values in randoms(keys, len(cloud.points)).items()}
 
 
 def of_curves(curves, keys):
     """The attributes of hair curves by key: (values (n, 4), POINT or CURVE), a row a control point or a curve."""
     found = {key: (values, domain) for key, values, domain in _read(curves, keys) if domain in ("POINT", "CURVE")}
-    return found | {key: (values[:, 0], "CURVE") for key, values in _randoms(keys, len(curves.curves)).items()}
+    return found | {key: (values, "CURVE") for key, values in randoms(keys, len(curves.curves)).items()}
 
 
-def _randoms(keys, count):
-    """The Random output of Point Info and Curves Info, (count, 1, 4) by key."""
+def randoms(keys, count, first=0):
+    """The Random output of Point Info and Curves Info for the elements from number `first` on, (count, 4) by key."""
     wanted = [key for key in keys if parts_of(key)[0] == "random"]
-    values = _hash(np.arange(count, dtype=np.uint32), 0) if wanted else None
-    return {key: _grey(_unit(values))[:, None] for key in wanted}
+    values = _hash(np.arange(first, first + count, dtype=np.uint32), 0) if wanted else None
+    return {key: _grey(_unit(values)) for key in wanted}
 
 
 def _read(data, keys):

@@ -4,6 +4,7 @@
 from dataclasses import dataclass, field
 
 from ..engine.scene import Geometry
+from ..wording import counted
 from .attributes import of_primitives, parts_of, read_attribute
 from .curves import DEFAULT_RADIUS, Read, sampling_of, strands_of_curves, strands_of_edges, strands_of_legacy_curve
 from .islands import find_islands
@@ -122,7 +123,7 @@ class Contents:
             found = self._islands(mesh, keys) if islands and not sources else None
             read = read_triangles(mesh, len(shadings), sources, keys, None if found is None else found.rest)
             if read.dropped:
-                dropped, verb = ("1 triangle", "is") if read.dropped == 1 else (f"{read.dropped} triangles", "are")
+                dropped, verb = counted(read.dropped, "triangle"), "is" if read.dropped == 1 else "are"
                 self._reports.warn(
                     f"object {copies.obj.name!r}: {dropped} with NaN or infinite vertices {verb} not rendered"
                 )
@@ -141,9 +142,13 @@ class Contents:
         def read():
             found = read_points(cloud, len(shadings), keys)
             if found.not_finite:
-                self._warn(copies, f"has {_counted(found.not_finite)} not finite in place or radius, not rendered")
+                self._warn(
+                    copies, f"has {counted(found.not_finite, 'point')} not finite in place or radius, not rendered"
+                )
             if found.without_radius:
-                self._warn(copies, f"has {_counted(found.without_radius)} without a radius above 0, not rendered")
+                self._warn(
+                    copies, f"has {counted(found.without_radius, 'point')} without a radius above 0, not rendered"
+                )
             return found.geometry
 
         return self._once((data_key(cloud), len(shadings), keys), read, "point cloud")
@@ -184,11 +189,11 @@ class Contents:
 
     def _hair(self, copies, shadings, keys):
         obj = copies.obj
-        key = original_key(obj), "hair", len(shadings)
+        key = original_key(obj), "hair", len(shadings), keys
         if key not in self._geometries:
             sampling = sampling_of(self._settings, self._pixels.of(copies))
             render = self._depsgraph.mode == "RENDER"
-            self._geometries[key] = strands_of_particles(obj, sampling, render, len(shadings))
+            self._geometries[key] = strands_of_particles(obj, sampling, render, len(shadings), keys)
         for system in self._geometries[key]:
             yield from self._strands(copies, (*key, system.name), lambda sampling, system=system: system.read)
 
@@ -198,8 +203,9 @@ class Contents:
         def geometry():
             found: Read = read(sampling_of(self._settings, self._pixels.of(copies)))
             if found.dropped:
-                strands = "1 strand is" if found.dropped == 1 else f"{found.dropped} strands are"
-                self._warn(copies, f"has places or radii that are not finite: {strands} not rendered")
+                verb = "is" if found.dropped == 1 else "are"
+                strands = counted(found.dropped, "strand")
+                self._warn(copies, f"has places or radii that are not finite: {strands} {verb} not rendered")
             for warning in found.warnings:
                 self._reports.warn(f"object {copies.obj.name!r}: {warning}")
             return found.geometry
@@ -211,7 +217,3 @@ class Contents:
             self._geometries[key] = read()
         geometry = self._geometries[key]
         return () if geometry is None else (Content(geometry, kind),)
-
-
-def _counted(count):
-    return "1 point" if count == 1 else f"{count:,} points"

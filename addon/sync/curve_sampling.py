@@ -20,6 +20,9 @@ _WIDEST_BALL = 2.0
 #: No segment is cut finer, however near the camera is.
 MAX_STEPS = 1024
 
+#: Nor all together into more pieces: memory is to hold them, and near a camera among hairs a pixel is very small.
+MAX_PIECES = 1 << 24
+
 
 @dataclass(frozen=True)
 class ControlCurves:
@@ -70,13 +73,15 @@ class Sampling:
 
 @dataclass(frozen=True)
 class Samples:
-    """Polylines: points (n, 3), offsets (c + 1,), radius (n,), cyclic (c,) bool, attributes name -> (n, 4)."""
+    """Polylines: points (n, 3), offsets (c + 1,), radius (n,), cyclic (c,) bool, attributes name -> (n, 4). `coarser`:
+    whether they are off by more than the tolerance, for there would be more than `MAX_PIECES`."""
 
     points: np.ndarray
     offsets: np.ndarray
     radius: np.ndarray
     cyclic: np.ndarray
     attributes: dict
+    coarser: bool = False
 
 
 def sample(curves, sampling):
@@ -133,7 +138,8 @@ def _sample_group(curves, kind, sampling):
         pieces = _Bezier(curves)
     else:
         pieces = _Nurbs(curves, int(kind - NURBS))
-    steps = _steps(pieces, curves, sampling)
+    wanted = _steps(pieces, curves, sampling)
+    steps = wanted if sampling.tolerance is None else _bounded(wanted)
     of_curve = pieces.of_curve
     is_last = np.append(of_curve[1:] != of_curve[:-1], True)
     counts = steps + (is_last & ~curves.cyclic[of_curve])  # an open curve has one sample more than steps
@@ -146,7 +152,14 @@ def _sample_group(curves, kind, sampling):
         value.of(curves.radius),
         curves.cyclic,
         {name: value.of(values) for name, values in curves.attributes.items()},
+        coarser=steps is not wanted,
     )
+
+
+def _bounded(steps):
+    """Steps (m,) of segments, fewer in proportion where they are more than `MAX_PIECES` in all."""
+    total = int(steps.sum())
+    return steps if total <= MAX_PIECES else np.maximum(steps * MAX_PIECES // total, 1)
 
 
 def _steps(pieces, curves, sampling):
@@ -190,6 +203,7 @@ def _in_order(parts, rows, curves):
         np.concatenate([part.radius for part in parts])[points],
         curves.cyclic,
         {name: np.concatenate([part.attributes[name] for part in parts])[points] for name in curves.attributes},
+        coarser=any(part.coarser for part in parts),
     )
 
 

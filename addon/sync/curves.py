@@ -20,10 +20,13 @@ import numpy as np
 from ..engine import strands
 from ..engine.scene import Geometry
 from .attributes import of_curves, parts_of, read_attribute
+from .compat import has_geometry_sets
 from .curve_sampling import BEZIER, CATMULL_ROM, NURBS, POLY, ControlCurves, Sampling, offsets_of, sample
+from .raw_attributes import read_positions, read_raw
 
 #: Radius of curves that say none, as in Cycles.
 DEFAULT_RADIUS = 0.005
+_COARSER = "the camera is so near that its strands are cut coarser than the tolerance asks for"
 _SPLINE_KINDS = {"POLY": POLY, "BEZIER": BEZIER, "NURBS": NURBS}
 
 
@@ -35,6 +38,21 @@ class Read:
     geometry: Geometry | None = None
     dropped: int = 0
     warnings: tuple = ()
+
+    @classmethod
+    def of(cls, samples, name, **settings):
+        """Of the `Samples` of curves; `settings` are what else `Polylines` have."""
+        made = strands.strands(
+            strands.Polylines(
+                samples.points,
+                samples.offsets,
+                samples.radius,
+                samples.cyclic,
+                attributes=samples.attributes,
+                **settings,
+            )
+        )
+        return cls(made.geometry(name), made.dropped, (_COARSER,) if samples.coarser else ())
 
 
 def sampling_of(settings, pixel):
@@ -54,7 +72,7 @@ def strands_of_curves(curves, sampling, slot_count=1, keys=(), radius=1.0, defau
 def strands_of_legacy_curve(obj, radius, sampling, depsgraph, slot_count=1, keys=()):
     """The `Read` of an evaluated CURVE object whose curves have neither bevel nor fill; empty where they have, since
     its faces come as a mesh. `radius` multiplies that of their points."""
-    if not hasattr(obj, "evaluated_geometry"):
+    if not has_geometry_sets():
         return _strands_of_splines(obj, radius, sampling, depsgraph, slot_count)
     geometry = obj.evaluated_geometry()  # owns the curves
     curves = geometry.curves
@@ -71,12 +89,12 @@ def strands_of_edges(mesh, radius, keys=()):
     count = len(mesh.edges)
     if not count:
         return Read()
-    ends = _values(mesh, ".edge_verts", "EDGE", "INT32_2D", count, None)
+    ends = read_raw(mesh, ".edge_verts", "EDGE", "INT32_2D")
     if len(mesh.loops):
         loose = np.ones(count, bool)
-        loose[_values(mesh, ".corner_edge", "CORNER", "INT", len(mesh.loops), None)] = False
+        loose[read_raw(mesh, ".corner_edge", "CORNER", "INT")] = False
         ends = ends[loose]
-    points = _values(mesh, "position", "POINT", "FLOAT_VECTOR", len(mesh.vertices), None)
+    points = read_positions(mesh)
     attributes = {}
     for key in keys:
         source, name, output = parts_of(key)
@@ -93,18 +111,7 @@ def _read(control, name, sampling, slot_count, scale):
         return Read()
     curves, slots, of_curve = control
     curves = replace(curves, radius=curves.radius * scale)
-    made = sample(curves, sampling)
-    polylines = strands.Polylines(
-        made.points,
-        made.offsets,
-        made.radius,
-        made.cyclic,
-        material=np.clip(slots, 0, slot_count - 1),
-        attributes=made.attributes,
-        of_polylines=of_curve,
-    )
-    made = strands.strands(polylines)
-    return Read(made.geometry(name), made.dropped)
+    return Read.of(sample(curves, sampling), name, material=np.clip(slots, 0, slot_count - 1), of_polylines=of_curve)
 
 
 def _control_curves(curves, keys, default_slot=0, default_radius=1.0):
@@ -123,9 +130,9 @@ def _control_curves(curves, keys, default_slot=0, default_radius=1.0):
     def of_curve(name, kind, default):
         return _values(curves, name, "CURVE", kind, count, default)
 
-    left, right = (of_point(f"handle_{side}", "FLOAT_VECTOR", None) for side in ("left", "right"))
+    left, right = (read_raw(curves, f"handle_{side}", "POINT", "FLOAT_VECTOR") for side in ("left", "right"))
     control = ControlCurves(
-        points=of_point("position", "FLOAT_VECTOR", None).astype(np.float64),
+        points=read_positions(curves).astype(np.float64),
         offsets=offsets.astype(np.int64),
         radius=of_point("radius", "FLOAT", default_radius).astype(np.float64),
         kind=of_curve("curve_type", "INT8", CATMULL_ROM),
@@ -141,27 +148,10 @@ def _control_curves(curves, keys, default_slot=0, default_radius=1.0):
     return control, of_curve("material_index", "INT", default_slot), by_curve
 
 
-#: Of Blender's types: where the values of an attribute are, their dtype, how many.
-_TYPES = {
-    "FLOAT": ("value", np.float32, 1),
-    "INT": ("value", np.int32, 1),
-    "INT8": ("value", np.int8, 1),
-    "BOOLEAN": ("value", bool, 1),
-    "FLOAT_VECTOR": ("vector", np.float32, 3),
-    "INT32_2D": ("value", np.int32, 2),
-}
-
-
 def _values(data, name, domain, kind, count, default):
-    """A built-in attribute, (count,) or (count, width); the default, one for all or None, where there is none."""
-    attribute = data.attributes.get(name)
-    if attribute is None or attribute.domain != domain or attribute.data_type != kind:
-        return None if default is None else np.full(count, default)
-    member, dtype, width = _TYPES[kind]
-    values = np.empty(count * width, dtype)
-    if count:
-        attribute.data.foreach_get(member, values)
-    return values.reshape(-1, width) if width > 1 else values
+    """A built-in attribute, (count,); the default for all where there is none."""
+    found = read_raw(data, name, domain, kind)
+    return np.full(count, default) if found is None else found
 
 
 def _strands_of_splines(obj, radius, sampling, depsgraph, slot_count):
@@ -180,7 +170,7 @@ def _strands_of_splines(obj, radius, sampling, depsgraph, slot_count):
     control = _joined_splines(parts)
     read = _read((control, slots, {}), obj.data.name, sampling, slot_count, radius)
     if any(modifier.show_render and not getattr(modifier, "use_apply_on_spline", False) for modifier in obj.modifiers):
-        return replace(read, warnings=("its modifiers change its strands only from Blender 4.5 on",))
+        return replace(read, warnings=(*read.warnings, "its modifiers change its strands only from Blender 4.5 on"))
     return read
 
 

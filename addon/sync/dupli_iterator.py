@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's own iterator over all objects and instances, one by one: it knows every instancer, but no attributes."""
 
+from array import array
+
 import numpy as np
 
 from .visibility import shows_hair
@@ -16,7 +18,7 @@ class _Group:
         self.kinds = [obj.type] if instance.show_self else []
         if self.is_own and shows_hair(obj):
             self.kinds.append("HAIR")
-        self.rows, self.random_ids = [], []  # 12 numbers a copy: the upper rows of its matrix
+        self.rows, self.random_ids = array("f"), array("q")  # 12 numbers a copy: the upper rows of its matrix
 
     def copies(self, make):
         matrices = np.zeros((len(self.random_ids), 4, 4), np.float32)

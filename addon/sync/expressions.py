@@ -14,6 +14,7 @@ import numpy as np
 #: Rows that are evaluated together: bounds the memory for millions of elements.
 _PIECE = 1 << 18
 _MADE = "made:"
+_LARGEST = float(np.finfo(np.float32).max)
 
 
 @dataclass(frozen=True)
@@ -54,11 +55,12 @@ class Made:
 
 
 def made(function, settings, inputs):
-    """The expression `function(*settings, *inputs)`: a constant where all inputs are constants."""
+    """The expression `function(*settings, *inputs)`: a constant where all inputs are constants, 0 for what is no number
+    or beyond float32."""
     if all(isinstance(i, Constant) for i in inputs):
         with np.errstate(all="ignore"):
             value = function(*settings, *(np.array(i.value) for i in inputs))
-        return Constant(tuple(float(x) for x in np.nan_to_num(value)))
+        return Constant(tuple(float(x) if abs(x) <= _LARGEST else 0.0 for x in value))
     digest = blake2b(digest_size=12)
     for part in (function.__name__, settings, *(i.key if isinstance(i, Made) else i for i in inputs)):
         digest.update(repr(part).encode() + b";")

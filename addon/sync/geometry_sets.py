@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from .keys import original_key
+from .raw_attributes import values_of
 from .visibility import shows_hair
 
 #: Blender makes no instances that are nested deeper.
@@ -231,13 +232,13 @@ def _instances(cloud):
     """Of n instances the transposed matrices (n, 4, 4) float32, ids (n,) and the number of their reference (n,)."""
     transform = cloud.attributes["instance_transform"].data
     count = len(transform)
-    columns, references = np.empty(count * 16, np.float32), np.empty(count, np.int32)
+    columns = np.empty(count * 16, np.float32)
     transform.foreach_get("value", columns)
-    cloud.attributes[".reference_index"].data.foreach_get("value", references)
+    references = values_of(cloud.attributes[".reference_index"])
     ids = np.arange(count, dtype=np.int32)
     given = cloud.attributes.get("id")
     if given is not None:
-        given.data.foreach_get("value", ids)
+        ids = values_of(given)
         if len(np.unique(ids)) < count:  # Blender gives others instead, at random
             raise UnknownInstancerError
     return columns.reshape(-1, 4, 4), ids, references

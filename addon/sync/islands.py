@@ -95,7 +95,9 @@ class _Layout:
         tried = 0
         for group in np.argsort(-count, kind="stable"):
             members = np.flatnonzero(of_island == group)
-            while len(members) and tried < _TOPOLOGIES:
+            while len(members):
+                if tried == _TOPOLOGIES:
+                    return
                 tried += 1
                 alike = self._alike(mesh, members)
                 yield members[alike]

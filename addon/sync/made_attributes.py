@@ -80,13 +80,15 @@ class _Walk:
             if rows.any():
                 self._of_part(part, part.attributes, rows)
         placed_of = {}
+        users = set(np.flatnonzero(self.users).tolist())
         for placed in self.scene.instances:
-            placed_of.setdefault(id(placed.geometry), []).append(placed)
+            if placed.materials is None or not users.isdisjoint(placed.materials):
+                placed_of.setdefault(id(placed.geometry), []).append(placed)
         for placed in placed_of.values():
             self._of_geometry(placed)
 
     def _of_geometry(self, placed):
-        """Of a geometry and all that is `placed` of it."""
+        """Of a geometry and all that is `placed` of it with these materials."""
         of_instances = {}
         count = max(len(self.users), *(len(p.materials or ()) for p in placed))
         slots = np.array([self._slots(p, count) for p in placed])

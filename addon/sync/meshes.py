@@ -7,6 +7,7 @@ import numpy as np
 
 from ..engine.scene import Triangles
 from .attributes import of_triangles
+from .raw_attributes import read_corner_vertices, read_positions, read_raw
 from .recognise import MeshArrays
 
 
@@ -16,11 +17,11 @@ def read_mesh(mesh, uv_map=None):
     offsets = np.empty(faces + 1, np.int32)
     mesh.polygons.foreach_get("loop_start", offsets[:faces])
     offsets[faces] = len(mesh.loops)
-    sharp = _attribute(mesh, "sharp_face", "FACE", "value", bool)
-    slots = _attribute(mesh, "material_index", "FACE", "value", np.int32)
+    sharp = read_raw(mesh, "sharp_face", "FACE", "BOOLEAN")
+    slots = read_raw(mesh, "material_index", "FACE", "INT")
     return MeshArrays(
-        positions=_positions(mesh),
-        corner_vertex=_corner_vertex(mesh),
+        positions=read_positions(mesh),
+        corner_vertex=read_corner_vertices(mesh),
         face_offset=offsets,
         smooth=np.ones(faces, bool) if sharp is None else ~sharp,
         material=np.zeros(faces, np.int32) if slots is None else slots,
@@ -34,44 +35,13 @@ def read_uv(mesh, name=""):
     """
     if not name:
         name = next((layer.name for layer in mesh.uv_layers if layer.active_render), "")
-    uv = _attribute(mesh, name, "CORNER", "vector", np.float32, 2) if name else None
+    uv = read_raw(mesh, name, "CORNER", "FLOAT2") if name else None
     return None if uv is None else np.nan_to_num(uv, copy=False, posinf=0.0, neginf=0.0)
-
-
-def _attribute(mesh, name, domain, member, dtype, width=1):
-    """A mesh attribute as (n,) or (n, width); None where it is absent or lies on another domain."""
-    attribute = mesh.attributes.get(name)
-    if attribute is None or attribute.domain != domain or not _has(attribute, width, dtype):
-        return None
-    values = np.empty(len(attribute.data) * width, dtype)
-    attribute.data.foreach_get(member, values)
-    return values.reshape(-1, width) if width > 1 else values
-
-
-def _has(attribute, width, dtype):
-    wanted = {(1, bool): "BOOLEAN", (1, np.int32): "INT", (2, np.float32): "FLOAT2", (3, np.float32): "FLOAT_VECTOR"}
-    return attribute.data_type == wanted[width, dtype]
-
-
-def _positions(mesh):
-    positions = np.empty(len(mesh.vertices) * 3, np.float32)
-    if len(positions):
-        mesh.attributes["position"].data.foreach_get("vector", positions)
-    return positions.reshape(-1, 3)
-
-
-def _corner_vertex(mesh):
-    corners = np.empty(len(mesh.loops), np.int32)
-    if len(corners):
-        mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
-    return corners
 
 
 def is_closed_mesh(mesh):
     """Whether the faces of an evaluated Blender mesh close around a body: each of their edges has two of them."""
-    edges = np.empty(len(mesh.loops), np.int32)
-    mesh.attributes[".corner_edge"].data.foreach_get("value", edges)
-    corners = np.bincount(edges)
+    corners = np.bincount(read_raw(mesh, ".corner_edge", "CORNER", "INT"))
     return bool((corners[corners > 0] == 2).all())  # an edge without a face bounds nothing
 
 
@@ -95,8 +65,8 @@ def read_triangles(mesh, slot_count, uv_sources=(), keys=(), wanted=None):
         corners, faces = corners[wanted[faces]], faces[wanted[faces]]
     if not len(corners):
         return MeshTriangles(None)
-    vertices = _corner_vertex(mesh)[corners]
-    positions = _positions(mesh)
+    vertices = read_corner_vertices(mesh)[corners]
+    positions = read_positions(mesh)
     good = np.isfinite(positions).all(axis=1)
     dropped = 0
     if not good.all():
@@ -107,7 +77,7 @@ def read_triangles(mesh, slot_count, uv_sources=(), keys=(), wanted=None):
             return MeshTriangles(None, dropped)
     columns = dict(zip(("p0", "p1", "p2"), positions[vertices.T], strict=True))
     columns |= _normals(mesh, corners, faces)
-    slots = _attribute(mesh, "material_index", "FACE", "value", np.int32)
+    slots = read_raw(mesh, "material_index", "FACE", "INT")
     material = np.clip(slots[faces], 0, slot_count - 1) if slots is not None else np.zeros(len(faces), np.int32)
     columns |= _uvs(mesh, corners, material, uv_sources)
     attributes = of_triangles(mesh, keys, corners, faces)
@@ -136,7 +106,7 @@ def _normals(mesh, corners, faces):
     mesh.corner_normals.foreach_get("vector", normals)
     normals = np.nan_to_num(normals.reshape(-1, 3), copy=False)
     of_triangle = normals[corners.T]
-    sharp = _attribute(mesh, "sharp_face", "FACE", "value", bool)
+    sharp = read_raw(mesh, "sharp_face", "FACE", "BOOLEAN")
     if sharp is not None and not mesh.has_custom_normals:
         of_triangle[:, sharp[faces]] = 0.0
     return dict(zip(("n0", "n1", "n2"), of_triangle, strict=True))

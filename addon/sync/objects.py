@@ -8,12 +8,14 @@ import numpy as np
 
 from ..engine.errors import SceneError
 from ..engine.scene import Scene
+from ..wording import counted
 from .camera import camera_of_render
 from .compat import has_geometry_sets
 from .contents import Contents
 from .geometry_sets import components_of, geometry_set_of
 from .instancing import Copies
 from .pixel_sizes import PixelSizes
+from .raw_attributes import values_of
 from .reports import Reports
 from .shading import Shadings
 from .taken import Recognitions, materials_of, taken_as
@@ -85,21 +87,24 @@ def _has_faces(obj):
 
 
 def _points(cloud):
-    return "POINT_CLOUD", f"point cloud: {_counted(len(cloud.points), 'sphere')}"
+    return "POINT_CLOUD", f"point cloud: {counted(len(cloud.points), 'sphere')}"
 
 
 def _strands(copies, depsgraph):
     """Of hair, curves without bevel and edges without faces: how many, and of which pieces they are made."""
     data, noun = copies.data, "edge" if copies.kind == "MESH" else "strand"
     lines = len(data.edges) if copies.kind == "MESH" else len(data.splines if copies.kind == "CURVE" else data.curves)
-    points = 0 if copies.kind == "CURVE" else len(data.vertices if copies.kind == "MESH" else data.points)
-    text = _counted(lines, noun)
+    if copies.kind == "CURVE":
+        points = sum(len(spline.bezier_points) + len(spline.points) for spline in data.splines)
+    else:
+        points = len(data.vertices if copies.kind == "MESH" else data.points)
+    text = counted(lines, noun)
     pieces = _pieces(copies, depsgraph) if points <= _COUNT_POINTS else None
     if pieces is None:
         return "CURVES", text
     if not pieces:
         return "NONE", f"not rendered: {text}, without a radius above 0"
-    return "CURVES", f"{text}: {', '.join(_counted(count, kind) for kind, count in sorted(pieces.items()))}"
+    return "CURVES", f"{text}: {', '.join(counted(count, kind) for kind, count in sorted(pieces.items()))}"
 
 
 def _pieces(copies, depsgraph):
@@ -148,8 +153,7 @@ def _instances(geometry_set):
     if cloud is None:
         return ""
     references = geometry_set.instance_references()
-    of_instance = np.empty(len(cloud.points), np.int32)
-    cloud.attributes[".reference_index"].data.foreach_get("value", of_instance)
+    of_instance = values_of(cloud.attributes[".reference_index"])
     counts = np.bincount(of_instance, minlength=len(references))
     found = Counter()
     for reference, count in zip(references, counts, strict=True):
@@ -173,16 +177,12 @@ def _older_instances(obj):
         settings = system.settings
         of = settings.instance_object if settings.render_type == "OBJECT" else settings.instance_collection
         if settings.render_type in ("OBJECT", "COLLECTION") and of is not None:
-            yield "INSTANCES", f"instances {of.name!r} on {_counted(len(system.particles), 'particle')}"
+            yield "INSTANCES", f"instances {of.name!r} on {counted(len(system.particles), 'particle')}"
     if obj.instance_type == "COLLECTION" and obj.instance_collection is not None:
         yield "INSTANCES", f"instances the collection {obj.instance_collection.name!r}"
     elif obj.instance_type in ("VERTS", "FACES") and obj.type == "MESH":
         on = {"VERTS": (obj.data.vertices, "vertex"), "FACES": (obj.data.polygons, "face")}[obj.instance_type]
-        yield "INSTANCES", f"instances its children on {_counted(len(on[0]), on[1])}"
-
-
-def _counted(count, noun):
-    return f"{count:,} {noun if count == 1 else {'vertex': 'vertices'}.get(noun, noun + 's')}"
+        yield "INSTANCES", f"instances its children on {counted(len(on[0]), on[1])}"
 
 
 def _matrix(obj):

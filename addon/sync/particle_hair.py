@@ -4,30 +4,31 @@
 Blender gives one point of one hair a call; 10,000 hairs of 9 points take about a quarter of a second.
 """
 
+from array import array
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..engine import strands
+from .attributes import randoms
 from .curve_sampling import CATMULL_ROM, ControlCurves, sample
 from .curves import Read
 
 
 @dataclass(frozen=True)
 class ParticleHair:
-    """The hair of one particle system: its name, the slot of its material, what was read."""
+    """The hair of one particle system: its name, and what was read."""
 
     name: str
-    slot: int
     read: Read
 
 
-def strands_of_particles(obj, sampling, render, slot_count=1):
+def strands_of_particles(obj, sampling, render, slot_count=1, keys=()):
     """The `ParticleHair` of each particle system of an evaluated object that shows hair as paths, in object space.
 
-    `render`: the final picture, with the steps and children for it, else those of the viewport.
+    `render`: the final picture, with the steps and children for it, else those of the viewport. `keys` of the
+    attributes to read: hairs have but a random number.
     """
-    found = []
+    found, hairs = [], 0
     for modifier in obj.modifiers:
         if modifier.type != "PARTICLE_SYSTEM" or not (modifier.show_render if render else modifier.show_viewport):
             continue
@@ -35,16 +36,19 @@ def strands_of_particles(obj, sampling, render, slot_count=1):
         settings = system.settings
         if settings.type == "HAIR" and settings.render_type == "PATH":
             slot = min(max(settings.material - 1, 0), slot_count - 1)
-            found.append(ParticleHair(system.name, slot, _read(obj, system, settings, sampling, render, slot)))
+            points = _paths(obj, system, _numbers(system, settings, render), _point_count(settings, render))
+            samples = sample(_curves(points, settings), sampling)
+            of_hair = randoms(keys, len(points), hairs)
+            read = Read.of(samples, system.name, material=slot, of_polylines=of_hair)
+            found.append(ParticleHair(system.name, read))
+            hairs += len(points)
     return found
 
 
-def _read(obj, system, settings, sampling, render, slot):
-    points = _paths(obj, system, _numbers(system, settings, render), _point_count(settings, render))
+def _curves(points, settings):
+    """The `ControlCurves` of hairs with points (hairs, keys, 3)."""
     count, keys = points.shape[:2]
-    if not count:
-        return Read()
-    curves = ControlCurves(
+    return ControlCurves(
         points=points.reshape(-1, 3),
         offsets=np.arange(count + 1) * keys,
         radius=_radii(points, settings).reshape(-1),
@@ -52,9 +56,6 @@ def _read(obj, system, settings, sampling, render, slot):
         cyclic=np.zeros(count, bool),
         resolution=np.full(count, 1),
     )
-    made = sample(curves, sampling)
-    made = strands.strands(strands.Polylines(made.points, made.offsets, made.radius, material=slot))
-    return Read(made.geometry(system.name), made.dropped)
 
 
 def _numbers(system, settings, render):
@@ -72,13 +73,14 @@ def _point_count(settings, render):
 
 def _paths(obj, system, numbers, keys):
     """Points (hairs, keys, 3) float64 in object space."""
-    flat, place, steps = [], system.co_hair, range(keys)
+    flat, place, steps = array("d"), system.co_hair, range(keys)
     for number in numbers:
         for step in steps:
             flat.extend(place(obj, particle_no=number, step=step))
-    world = _with_ends(np.array(flat, np.float64).reshape(-1, keys, 3))
-    to_object = np.linalg.inv(np.array(obj.matrix_world, np.float64))
-    return world @ to_object[:3, :3].T + to_object[:3, 3]
+    world = _with_ends(np.array(flat).reshape(-1, keys, 3))
+    # Flattened or not finite, it is placed, or reported, as the object itself.
+    matrix = np.nan_to_num(np.array(obj.matrix_world, np.float64), posinf=0.0, neginf=0.0)
+    return (world - matrix[:3, 3]) @ np.linalg.pinv(matrix[:3, :3]).T
 
 
 def _with_ends(points):

@@ -4,6 +4,7 @@
 import numpy as np
 
 from .keys import data_key
+from .raw_attributes import read_positions
 
 
 class PixelSizes:
@@ -55,8 +56,6 @@ def _bounds(copies):
     elif copies.kind == "CURVE":  # Blender tells nothing of them
         corners = np.empty((0, 3))
     else:
-        corners = np.empty((len(copies.data.points), 3), np.float32)
-        if len(corners):
-            copies.data.attributes["position"].data.foreach_get("vector", corners.reshape(-1))
+        corners = read_positions(copies.data)
         corners = corners[np.isfinite(corners).all(axis=1)]
     return (corners.min(axis=0), corners.max(axis=0)) if len(corners) else (np.zeros(3), np.zeros(3))

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..engine.scene import Geometry, Spheres
 from .attributes import of_points
+from .raw_attributes import read_positions, read_raw
 
 #: The radius of points that have none, as in Blender.
 DEFAULT_RADIUS = 0.01
@@ -26,9 +27,10 @@ def read_points(cloud, slot_count, keys=()):
     """The `PointSpheres` of an evaluated point cloud; `keys` of the attributes to read. The material of a point is the
     slot, as Blender clamps it to `slot_count`."""
     count = len(cloud.points)
-    center = _read(cloud, "position", "FLOAT_VECTOR", "vector", np.empty((count, 3), np.float32))
-    radius = _read(cloud, "radius", "FLOAT", "value", np.full(count, DEFAULT_RADIUS, np.float32))
-    slots = _read(cloud, "material_index", "INT", "value", np.zeros(count, np.int32))
+    center = read_positions(cloud)
+    radius = read_raw(cloud, "radius", "POINT", "FLOAT")
+    radius = np.full(count, DEFAULT_RADIUS, np.float32) if radius is None else radius
+    slots = read_raw(cloud, "material_index", "POINT", "INT")
     finite = np.isfinite(radius) & np.isfinite(center).all(axis=1)
     good = finite & (radius > 0.0)
     not_finite, kept = int(count - finite.sum()), int(good.sum())
@@ -38,16 +40,8 @@ def read_points(cloud, slot_count, keys=()):
     spheres = Spheres(
         center=np.where(good[:, None], center, 0.0) if kept < count else center,
         radius=np.where(good, radius, 1.0) if kept < count else radius,
-        material=np.clip(slots, 0, slot_count - 1) if slots.any() else 0,
+        material=0 if slots is None or not slots.any() else np.clip(slots, 0, slot_count - 1),
         attributes=of_points(cloud, keys),
     )
     spheres = spheres.take(good) if kept < count else spheres
     return PointSpheres(Geometry(spheres, name=cloud.name), not_finite, without_radius)
-
-
-def _read(cloud, name, data_type, member, values):
-    """Fill `values` with a point cloud's attribute, if it has it."""
-    attribute = cloud.attributes.get(name)
-    if attribute is not None and attribute.data_type == data_type and len(attribute.data) == len(values):
-        attribute.data.foreach_get(member, values.reshape(-1))
-    return values

@@ -43,7 +43,8 @@ def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report, sp
     view_layer = depsgraph.view_layer_eval
     world = view_layer.world_override or depsgraph.scene_eval.world
     scene.world = read_world(world, scene, images, reports)
-    shadings = Shadings(scene, images, reports, (view_layer, depsgraph.scene_eval, world))
+    layers = tuple(owner for owner in (view_layer, depsgraph.scene_eval, world) if owner is not None)
+    shadings = Shadings(scene, images, reports, layers)
     lights = Lights(scene, reports)
     with timed(statistics.seconds, "collect"):
         objects = ObjectSync(scene, shadings, lights, reports, depsgraph, height, space)

@@ -7,13 +7,14 @@ NaN or infinite where Cycles has something of its own: the caller makes that 0.
 
 import numpy as np
 
-_LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
+from .values import LUMINANCE
+
 _EPSILON = np.finfo(np.float32).eps
 
 
 def as_number(is_color, x):
     """What Blender makes of a colour or vector (..., 3) that is linked to a number."""
-    return (colors(x) @ _LUMINANCE.astype(x.dtype))[..., None] if is_color else x.mean(axis=-1, keepdims=True)
+    return (colors(x) @ LUMINANCE.astype(x.dtype))[..., None] if is_color else x.mean(axis=-1, keepdims=True)
 
 
 def component(i, x):

@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 #: Rec. 709 luminance.
-_LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
+LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
 #: An addition of less than this part is too weak to be told about.
 _UNSEEN = 0.1
 MISSING = (1.0, 0.0, 1.0)  # the pink that Blender shows for an image that is not there
 
 
 def luminance(rgb):
-    return float(np.dot(rgb, _LUMINANCE))
+    return float(np.dot(rgb, LUMINANCE))
 
 
 @dataclass(frozen=True)

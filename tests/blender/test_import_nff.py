@@ -309,6 +309,7 @@ def test_several_files_have_a_collection_each(tmp_path):
 @pytest.mark.parametrize("make", [lambda: balls(2), lambda: mount(3), lambda: tree(3)], ids=["balls", "mount", "tree"])
 @pytest.mark.parametrize("limit", [1000, 1])
 def test_pictures_are_those_of_the_file(imports, make, limit):
+    pytest.importorskip("moderngl", reason="the application does not have it")
     file = imports(make(), object_limit=limit)
     found, wanted = (render(each, 64, 64).pixels[..., :3] for each in (sync(64, 64).scene, file.scene))
     error = np.abs(found - wanted).max(axis=-1)

@@ -248,6 +248,28 @@ def test_material_index_and_properties_of_the_view_layer_are_constants():
     assert shading(of_layer)[0].glow == (0.0, 0.0, 0.0), "a property that is not there is 0"
 
 
+def test_a_property_of_the_view_layer_that_is_not_there_in_a_scene_without_a_world():
+    made, tree, output = material("stuff")
+    of_output(tree, output, "Attribute", attribute_type="VIEW_LAYER", attribute_name="tint")
+    mesh = mesh_of(POINTS, FACES)
+    mesh.materials.append(made)
+    link(mesh)
+    add_camera()
+    bpy.context.scene.world = None
+    (read,) = sync().scene.materials
+    assert read.glow == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("exponent", [100.0, 1000.0])
+def test_a_constant_beyond_float32_is_0(exponent):
+    def huge(tree, output):
+        power = node(tree, "Math", node(tree, "Emission", output.inputs["Surface"]).inputs["Color"])
+        power.operation = "EXPONENT"
+        power.inputs[0].default_value = exponent
+
+    assert shading(huge)[0].glow == (0.0, 0.0, 0.0)
+
+
 def mixed(tree, output, blend, factor=1.0):
     """A diffuse surface of a Mix of colors: its two color inputs."""
     made = node(tree, "Mix", node(tree, "BsdfDiffuse", output.inputs["Surface"]).inputs["Color"])

@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
+from addon.sync.attributes import randoms
 from addon.sync.curve_sampling import Sampling
 from addon.sync.curves import (
     sampling_of,
@@ -324,7 +325,7 @@ def test_particle_hair_tapers_from_root_to_tip():
     obj = particle_hair(root_radius=2.0, tip_radius=0.5, radius_scale=0.1, use_close_tip=False)
     (made,) = read_particles(obj)
     found = parts(made.read)
-    assert made.slot == 0 and made.read.dropped == 0
+    assert made.read.dropped == 0
     assert len(found["sphere"]) == 20 * 5 and len(found["cone"]) == 20 * 4
     per_hair = found["sphere"].radius.reshape(20, 5)
     np.testing.assert_allclose(per_hair, np.tile(np.linspace(0.1, 0.025, 5), (20, 1)), rtol=0.05)
@@ -353,8 +354,31 @@ def test_the_slot_of_particle_hair():
     for name in "ab":
         obj.data.materials.append(bpy.data.materials.new(name))
     obj.particle_systems[0].settings.material = 2
-    assert [made.slot for made in read_particles(obj, slot_count=2)] == [1]
-    assert [made.slot for made in read_particles(obj, slot_count=1)] == [0]
+    for slot_count, slot in ((2, 1), (1, 0)):
+        (made,) = read_particles(obj, slot_count=slot_count)
+        assert all((part.material == slot).all() for part in parts(made.read).values())
+
+
+def test_hairs_have_random_numbers_over_all_particle_systems():
+    """Cycles counts the hairs of an object, and takes a hash of the number."""
+    obj = particle_hair()
+    obj.modifiers.new("more", "PARTICLE_SYSTEM")
+    obj.particle_systems[1].settings = obj.particle_systems[0].settings
+    made = read_particles(obj, keys=("random:", "geometry:Color"))
+    values = [part.attributes["random:"][:, :, 0] for hair in made for part in parts(hair.read).values()]
+    assert all((of_part == of_part[:, :1]).all() for of_part in values), "one for a hair"
+    found = np.unique(np.concatenate([of_part[:, 0] for of_part in values]))
+    expected = randoms(("random:",), 40)["random:"][:, 0]
+    np.testing.assert_array_equal(found, np.sort(expected))
+    assert not np.intersect1d(values[0], values[-1]).size, "the second system goes on counting"
+
+
+@pytest.mark.parametrize("scale", [(1.0, 1.0, 0.0), (0.0, 0.0, 0.0)])
+def test_hair_of_an_object_that_is_scaled_flat(scale):
+    obj = particle_hair()
+    obj.scale = scale
+    (made,) = read_particles(obj)
+    assert all(np.isfinite(part.bounds()).all() for part in parts(made.read).values())
 
 
 def test_particles_that_are_no_hair_paths():

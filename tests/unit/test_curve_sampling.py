@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from addon.sync import curve_sampling
 from addon.sync.curve_sampling import BEZIER, CATMULL_ROM, NURBS, POLY, ControlCurves, Sampling, sample
 from addon.sync.nurbs import ENDPOINT, NORMAL, knots_of
 
@@ -119,6 +120,18 @@ def test_no_chord_is_off_by_more_than_the_tolerance(kind, tolerance):
     assert max(off) <= tolerance
     assert max(off) > tolerance / 20.0, "and not far too fine"
     assert len(rough.points) < len(fine.points) / 5
+
+
+def test_there_is_a_most_number_of_pieces(monkeypatch):
+    """Near a camera among hairs the tolerance would ask for more than memory holds."""
+    curves = control([6] * 20, CATMULL_ROM)
+    fine = sample(curves, Sampling(tolerance=1e-6))
+    most = len(fine.points) // 10
+    monkeypatch.setattr(curve_sampling, "MAX_PIECES", most)
+    coarser = sample(curves, Sampling(tolerance=1e-6))
+    assert coarser.coarser and not fine.coarser
+    assert most // 2 < len(coarser.points) <= most + 2 * len(curves.points)
+    assert not sample(curves, Sampling(steps=100)).coarser, "a number of steps is what was asked for"
 
 
 def test_a_straight_segment_is_one_step():

@@ -7,9 +7,9 @@ import pytest
 
 from addon.engine import layout
 from addon.engine.errors import SceneError
-from addon.engine.packing import pack, scene_origin
+from addon.engine.packing import pack
 from addon.engine.primitives import Cylinders, Planes, Spheres, Triangles
-from addon.engine.scene import Camera, Geometry, Image, Instances, Light, Material, Scene, World
+from addon.engine.scene import Camera, Geometry, Image, Instances, Light, Material, Scene, Visibility, World
 
 LIMIT = 16384
 
@@ -165,9 +165,23 @@ def test_positions_are_relative_to_an_origin_near_the_camera(away):
 
 
 def test_the_origin_stays_while_the_camera_moves_a_little():
-    first = scene_origin(scene_of(spheres(50, offset=1e6), eye=(1e6, 1e6 - 5, 1e6)))
+    first = pack(scene_of(spheres(50, offset=1e6), eye=(1e6, 1e6 - 5, 1e6)), LIMIT).origin
     for step in np.linspace(0, 1, 10):
-        assert (scene_origin(scene_of(spheres(50, offset=1e6), eye=(1e6 + step, 1e6 - 5, 1e6))) == first).all()
+        packed = pack(scene_of(spheres(50, offset=1e6), eye=(1e6 + step, 1e6 - 5, 1e6)), LIMIT)
+        assert (packed.origin == first).all()
+
+
+def test_what_stands_in_the_world_by_the_identity_is_as_exact_as_the_shapes():
+    """As what not all rays see, and a mesh whose transform was applied."""
+    offset = np.array([1e6, 0.0, 0.0])
+    scene = scene_of(eye=np.add(offset, [0, -5, 0]))
+    scene.instances = [Instances(Geometry(spheres(50, offset=offset)), np.eye(4), visibility=Visibility.CAMERA)]
+    packed = pack(scene, LIMIT)
+    sphere, exact = records(packed, layout.SPHERE, 50), spheres(50, offset=offset)
+    back = sphere["center"].astype(np.float64) + packed.origin
+    assert np.abs(back[np.argsort(sphere["radius"])] - exact.center).max() < 4e-6
+    placed = records(packed, layout.INSTANCE_SURFACE, 1)
+    assert all(placed[f"to_world_{axis}"][0, 3] == 0.0 for axis in "xyz")
 
 
 def test_lights_planes_and_instances_move_with_the_origin():

@@ -21,6 +21,9 @@ Install one: on Debian and Ubuntu 'apt-get install libegl1 libgl1-mesa-dri' (Mes
 on Fedora 'dnf install mesa-libEGL mesa-dri-drivers', or the EGL libraries of your GPU's driver."""
 
 
+_EGL_DRAW_AND_READ = 0x3059, 0x305A
+
+
 @functools.cache
 def _egl():
     """The library that knows which context is current, None on systems without EGL."""
@@ -48,9 +51,6 @@ def _current_context_kept():
         yield
     finally:
         egl.eglMakeCurrent(display, *surfaces, context)
-
-
-_EGL_DRAW_AND_READ = 0x3059, 0x305A
 
 
 def _context():
