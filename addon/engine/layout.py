@@ -233,9 +233,24 @@ LIGHT = _record(
     "light",
     "tables",
     ("position", "vec3", "position; for a sun the unit direction towards it"),
-    ("kind", "int", "LIGHT_POINT, LIGHT_CONSTANT or LIGHT_SUN"),
+    ("kind", "int", "LIGHT_POINT, LIGHT_CONSTANT, ..., see `scene.LightKind`"),
     ("color", "vec3", "radiance of a white diffuse surface facing it, at distance 1 where it falls off"),
     ("shadow", "float", "1: what stands before it casts a shadow"),
+)
+# A record for each light where one of them has extent or a cone, else none.
+LIGHT_SHAPE = _record(
+    "light_shape",
+    "tables",
+    ("axis_x", "vec3", "area: half side or semi-axis; spot: first row of the matrix to where its cone is round"),
+    ("radius", "float", "of a ball; of a sun half the angle under which it is seen, in radians"),
+    ("axis_y", "vec3", "area: the other half side; spot: second row"),
+    ("soft", "float", "1: not a ball but its middle disc, which faces what it lights"),
+    ("axis_z", "vec3", "area: unit vector towards where it shines; spot: third row"),
+    ("falls_off", "float", "1: with the square of the distance"),
+    ("edge", "float", "spot: cosine of half the cone's angle"),
+    ("slope", "float", "spot: 1 over the range of the cosine in which the cone's edge grows bright"),
+    ("spread", "float", "area: cotangent of half the spread, 0: all around"),
+    ("unused", "float", ""),
 )
 IMAGE = _record(
     "image",
@@ -291,7 +306,8 @@ FRAME = _record(
     ("root_count", "float", "0: nothing but planes"),
     ("attribute_first", "float", ""),
     ("geometry_count", "float", "distinct geometries, those in world space among them"),
-    ("unused", "vec2", ""),
+    ("light_shape_first", "float", ""),
+    ("sample", "float", "number of the sample; -1: the only one, which takes the middle of everything"),
 )
 
 RECORDS = (
@@ -312,6 +328,7 @@ RECORDS = (
     PLANE_SURFACE,
     MATERIAL,
     LIGHT,
+    LIGHT_SHAPE,
     IMAGE,
     ATTRIBUTE,
 )

@@ -12,10 +12,11 @@ import numpy as np
 from . import bvh, instance_packing, layout
 from .errors import SceneError
 from .image_packing import pack_images
+from .light_packing import pack_lights
 from .material_packing import MaterialTable, check_image
 from .plan import PLANE_ATTRIBUTES, check_texels, make_plan
 from .primitives import BY_KIND, Similarity, invertible
-from .scene import LightKind, Visibility
+from .scene import Visibility
 from .timing import timed
 from .tree_packing import TreePacker, pieces
 
@@ -183,9 +184,11 @@ class _Packer:
     def _tables(self):
         """Write the records that share the texture `tables`; those of the planes."""
         planes, plane_surfaces = self._planes()
+        lights, light_shapes = pack_lights(self.scene.lights, self.origin)
         records = {
             "material": self.materials.records(self.plan.attributes),
-            "light": self._lights(),
+            "light": lights,
+            "light_shape": light_shapes,
             "plane": planes,
             "plane_surface": plane_surfaces,
             "image": self._images(),
@@ -208,16 +211,6 @@ class _Packer:
         if planes is None:
             return layout.PLANE.zeros(0), layout.PLANE_SURFACE.zeros(0)
         return planes.transformed(Similarity(np.eye(3), 1.0, -self.origin)).records()
-
-    def _lights(self):
-        records = layout.LIGHT.zeros(len(self.scene.lights))
-        for record, light in zip(records, self.scene.lights, strict=True):
-            offset = 0.0 if light.kind == LightKind.SUN else self.origin
-            record["position"] = np.subtract(light.position, offset)
-            record["kind"], record["color"], record["shadow"] = light.kind, light.color, light.shadow
-        if not all(np.isfinite(records[name]).all() for name in ("position", "color")):
-            raise SceneError("a light has a position or colour that is not finite")
-        return records
 
     def _images(self):
         """Image records; their texels go in the texture `images`, reduced where they would not fit."""
@@ -249,6 +242,8 @@ class _Packer:
         if self.scene.world.image >= 0:
             features.add("HAS_WORLD_IMAGE")
         seen = {int(p.visibility) for p in self.plan.placed} | set(np.unique(planes["visibility"]).astype(int).tolist())
+        if any(light.shaped for light in self.scene.lights):
+            features.add("HAS_LIGHT_SHAPES")
         if any(~bits & Visibility.ALL for bits in seen):
             features.add("HAS_VISIBILITY")
         if any(bits & Visibility.HOLDOUT for bits in seen):

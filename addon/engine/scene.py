@@ -5,11 +5,12 @@ kept in float64 and taken relative to an origin near the camera when they are pa
 """
 
 from dataclasses import dataclass, field
-from enum import IntEnum
 
 import numpy as np
 
 from .errors import SceneError
+from .light import Light as Light
+from .light import LightKind as LightKind
 from .primitives import BY_KIND, Cones, Cylinders, Discs, Planes, Spheres, Triangles
 from .visibility import Visibility
 
@@ -20,51 +21,6 @@ def _checked_color(name, value):
     if not np.isfinite(value).all() or (value < 0.0).any():
         raise SceneError(f"{name} is {tuple(value.tolist())}; it must be finite and not negative")
     return tuple(value.tolist())
-
-
-class LightKind(IntEnum):
-    POINT = 0  # falls off with the square of the distance
-    CONSTANT = 1  # positional, without fall-off, as in NFF
-    SUN = 2  # parallel rays
-
-
-@dataclass(frozen=True)
-class Light:
-    """A light without extent.
-
-    `color` (3,) is the radiance that a white diffuse surface facing the light returns: for POINT at distance 1. The
-    class methods make it from physical units.
-    """
-
-    kind: LightKind
-    position: tuple  # POINT, CONSTANT: where it is. SUN: direction towards it
-    color: tuple
-    shadow: bool = True  # whether what stands before it casts a shadow
-
-    @classmethod
-    def point(cls, position, watts, color=(1.0, 1.0, 1.0), *, shadow=True):
-        """A point light of `watts` as Blender counts them: watts / 4 pi per steradian; a white diffuse surface returns
-        the irradiance divided by pi."""
-        return cls(LightKind.POINT, tuple(position), _scaled(color, watts / (4.0 * np.pi**2)), shadow)
-
-    @classmethod
-    def constant(cls, position, color=(1.0, 1.0, 1.0), *, shadow=True):
-        """A positional light without fall-off, as the NFF databases have it."""
-        return cls(LightKind.CONSTANT, tuple(position), _scaled(color, 1.0), shadow)
-
-    @classmethod
-    def sun(cls, towards, strength, color=(1.0, 1.0, 1.0), *, shadow=True):
-        """Parallel light from the direction `towards` (3,); `strength` is its irradiance in watts per square metre."""
-        direction = np.asarray(towards, np.float64)
-        if not np.linalg.norm(direction) > 0.0:
-            raise SceneError(f"sun: the direction {tuple(towards)} has no length")
-        direction = direction / np.linalg.norm(direction)
-        return cls(LightKind.SUN, tuple(direction), _scaled(color, strength / np.pi), shadow)
-
-
-def _scaled(color, factor):
-    """An RGB colour, given as three numbers or one, times a factor."""
-    return tuple(float(x) for x in np.broadcast_to(np.multiply(color, factor), (3,)))
 
 
 @dataclass(frozen=True)

@@ -119,7 +119,7 @@ class Session:
             while not film.finished:
                 tile = film.next_tile()
                 started = time.perf_counter()
-                self._draw(tile.rectangle, film.raster(tile.sample, self.camera.window))
+                self._draw(tile.rectangle, tile.sample)
                 self.device.read(film.target, 0, (0, 0, 1, 1))  # waits for the GPU
                 film.advance(tile, time.perf_counter() - started)
                 if time.perf_counter() > deadline:
@@ -207,16 +207,16 @@ class Session:
     def _draw_outside(self):
         """Draw one pixel of a target that is thrown away."""
         scratch = self.device.target(1, 1, len(self._outputs))
-        self._draw((0, 0, 1, 1), self._film.raster(0, self.camera.window), scratch)
+        self._draw((0, 0, 1, 1), 0, scratch)
         self.device.read(scratch, 0, (0, 0, 1, 1))
         self.device.release(scratch)
 
-    def _draw(self, rectangle, raster, target=None):
-        uniforms = self._frame_record(raster)
+    def _draw(self, rectangle, sample, target=None):
+        uniforms = self._frame_record(sample)
         self.device.draw(self._program, target or self._film.target, rectangle, self._textures, uniforms)
 
-    def _frame_record(self, raster):
-        """The uniform block (n,) float32."""
+    def _frame_record(self, sample):
+        """The uniform block (n,) float32 of a sample."""
         camera = self.camera
         matrix = np.asarray(camera.matrix, np.float64)
         record = layout.FRAME.zeros(1)
@@ -228,7 +228,8 @@ class Session:
             "orthographic": camera.orthographic,
             "clip_start": camera.clip[0],
             "clip_end": camera.clip[1],
-            "raster": raster,
+            "raster": self._film.raster(sample, camera.window),
+            "sample": sample if self.settings.samples > 1 else -1,
             "max_depth": self.settings.max_depth,
             "weight_cutoff": self.settings.weight_cutoff,
             "film_transparent": self.settings.film_transparent,

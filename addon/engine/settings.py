@@ -9,7 +9,8 @@ from .errors import SceneError
 class Settings:
     """Render settings. Raises SceneError for values out of range.
 
-    `samples`: rays through each pixel; the first goes through its centre. `max_depth`: the eye ray is 1.
+    `samples`: rays through each pixel; the first goes through its centre. One takes the middle of each light, for a
+    picture without noise; of more, each takes another point of it. `max_depth`: the eye ray is 1.
     `weight_cutoff`: rays of a smaller share of the pixel are not followed, 0 follows all. `tinted_shadows`: shadow
     rays pass through transmitting bodies and take on their colour; otherwise all bodies are opaque to them, as in the
     paper. `film_transparent`: alpha 0 where the eye sees the sky. `count_rays`: compile the variant of the shader

@@ -34,6 +34,7 @@ FEATURES = frozenset(
         "HAS_HOLDOUT",
         "HAS_SHADOW_CATCHER",
         "HAS_CULLING",
+        "HAS_LIGHT_SHAPES",
         "TINTED_SHADOWS",
         "CULLED_SHADOWS",
         "COUNT_RAYS",

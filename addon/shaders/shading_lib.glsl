@@ -46,6 +46,9 @@ struct Lit {
   float shine;
   ivec4 media; /* around the lit side */
   int shadow;  /* kind of the shadow rays */
+#ifdef HAS_LIGHT_SHAPES
+  int depth; /* of the path ray */
+#endif
 };
 
 /* A ray towards a light. */
@@ -130,7 +133,19 @@ Shadow shading_next_shadow(inout int index, Lit lit, inout vec3 radiance)
     Light light = read_light(index);
     vec3 direction;
     float t_max;
+#ifdef HAS_LIGHT_SHAPES
+    bool sampled = frame_sample >= 0.0;
+    vec2 u = vec2(0.5);
+    if (sampled) {
+      u = sampling_2d(sampling_pixel(gl_FragCoord.xy), int(frame_sample), lit.depth * count + index);
+    }
+    vec3 arriving = light_shaped_at(light, index, lit.surface.position, sampled, u, direction, t_max);
+    if (optics_largest(arriving) <= 0.0) {
+      continue;
+    }
+#else
     vec3 arriving = light_at(light, lit.surface.position, direction, t_max);
+#endif
     float cosine = dot(lit.normal, direction);
     if (cosine <= 0.0) {
       continue;
@@ -312,6 +327,9 @@ Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout f
   lit.shine = material.shine;
   lit.media = path.media;
   lit.shadow = RAY_SHADOW;
+#ifdef HAS_LIGHT_SHAPES
+  lit.depth = path.depth;
+#endif
 
   bool goes_on = path.depth < int(frame_max_depth) && !culled;
 #ifdef HAS_SHADOW_CATCHER

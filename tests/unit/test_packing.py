@@ -296,4 +296,15 @@ def test_an_image_that_is_not_there():
 
 def test_a_light_that_is_nowhere():
     scene = scene_of(lights=[Light.constant((np.nan, 0, 0))])
-    refuse(scene, "a light has a position or colour that is not finite")
+    refuse(scene, "a light has a position, a color or a shape that is not finite")
+
+
+def test_lights_have_shapes_where_one_of_them_does():
+    scene = scene_of(lights=[Light.point((1, 2, 3), 1.0), Light.constant((0, 0, 1)), Light.sun((0, 0, 1), 1.0)])
+    packed = pack(scene, LIMIT)
+    assert "HAS_LIGHT_SHAPES" not in packed.features
+    scene.lights.append(Light.area((0, 0, 0), (2, 0, 0), (0, 3, 0), 1.0, spread=np.pi / 2.0))
+    packed = pack(scene, LIMIT)
+    shapes = records(packed, layout.LIGHT_SHAPE, 4)
+    assert "HAS_LIGHT_SHAPES" in packed.features
+    assert shapes["axis_y"][3].tolist() == [0, 1.5, 0] and shapes["spread"] == pytest.approx([0, 0, 0, 1])

@@ -46,6 +46,36 @@ def test_a_world_or_sun_that_cannot_be():
     assert World(0.5).color == (0.5, 0.5, 0.5)
 
 
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Light.point((0, 0, 0), 1.0, radius=-1.0), "the radius -1.0 must be finite"),
+        (lambda: Light.sun((0, 0, 1), 1.0, angle=4.0), "the angle 4.0 does not lie between 0 and pi"),
+        (lambda: Light.spot((0, 0, 0), (0, 0, 0), 1.0, 1.0), "spot: the direction (0.0, 0.0, 0.0) has no length"),
+        (lambda: Light.spot((0, 0, 0), (0, 0, 1), 1.0, 0.0), "spot: the angle 0.0 must lie between 0 and pi"),
+        (lambda: Light.spot((0, 0, 0), (0, 0, 1), 1.0, 1.0, 2.0), "the blend 2.0 between 0 and 1"),
+        (lambda: Light.area((0, 0, 0), (1, 0, 0), (2, 0, 0), 1.0), "have no area"),
+        (lambda: Light.area((0, 0, 0), (1, 0, 0), (0, 1, 0), 1.0, shape="DISC"), "the shape 'DISC' is none of"),
+        (lambda: Light.area((0, 0, 0), (1, 0, 0), (0, 1, 0), 1.0, spread=-1.0), "the spread -1.0"),
+    ],
+)
+def test_a_light_that_cannot_be(make, message):
+    with pytest.raises(SceneError, match=re.escape(message)):
+        make()
+
+
+def test_area_lights_and_spots_shine_where_they_are_told():
+    area = Light.area((0, 0, 0), (2, 0, 0), (0, 4, 0), np.pi**2)
+    assert area.kind == LightKind.RECTANGLE and area.axes == ((1, 0, 0), (0, 2, 0), (0, 0, 1))
+    assert np.allclose(area.color, 1.0) and area.shaped
+    # Behind slats, straight ahead, brighter: of 90 degrees by 1 / (1 - pi / 4).
+    narrow = Light.area((0, 0, 0), (2, 0, 0), (0, 4, 0), np.pi**2, spread=np.pi / 2.0, direction=(0, 0, -2))
+    assert np.allclose(narrow.color, 1.0 / (1.0 - np.pi / 4.0)) and narrow.axes[2] == (0, 0, -1)
+    axes = np.array(Light.spot((0, 0, 0), (3, 0, -4), 1.0, 1.0).axes)
+    assert np.allclose(axes @ (3, 0, -4), (0, 0, 5)) and np.allclose(axes @ axes.T, np.eye(3))
+    assert not Light.point((0, 0, 0), 1.0).shaped and not Light.sun((0, 0, 1), 1.0).shaped
+
+
 def test_a_number_is_a_grey_colour():
     assert Material(diffuse=0.5).diffuse == (0.5, 0.5, 0.5)
     assert Material.mirror().reflect == (1, 1, 1) and not Material.mirror().fresnel
