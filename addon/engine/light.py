@@ -44,7 +44,7 @@ class Light:
     direction in which it shines. SPOT: the matrix from the world's directions to where its cone is round about +Z."""
     angle: float = np.pi  # SPOT: of the cone, full. Area lights: the spread, beyond half of which it is not seen
     blend: float = 0.0  # SPOT: how much of the cone its soft edge takes, 0 to 1
-    falls_off: bool = True  # with the square of the distance. Not of CONSTANT and SUN, which never do
+    falls_off: bool = True  # with the square of the distance; says nothing of CONSTANT and SUN, which never do
 
     @classmethod
     def point(cls, position, watts, color=(1.0, 1.0, 1.0), *, radius=0.0, soft=False, shadow=True):
@@ -103,6 +103,12 @@ class Light:
         spread = max(float(spread), _LEAST_SPREAD)
         color = _scaled(color, watts / np.pi**2 * _spread_gain(spread))
         return cls(kind, tuple(center), color, shadow, axes=_rows((x / 2.0, y / 2.0, towards)), angle=spread)
+
+    def without_falloff(self):
+        """The light that is as bright everywhere as this one at distance 1; a sun is so anyway."""
+        if self.kind == LightKind.POINT and self.radius == 0.0:
+            return replace(self, kind=LightKind.CONSTANT)
+        return replace(self, falls_off=self.kind in (LightKind.CONSTANT, LightKind.SUN))
 
     @property
     def shaped(self):

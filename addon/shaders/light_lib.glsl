@@ -104,7 +104,7 @@ vec3 light_of_area(inout Light light, LightShape shape, vec3 point, bool sampled
     vec2 reach = max(dot(offset, shape.axis_z), 0.0) / (shape.spread * size);
     vec2 lower = clamp(foot - reach, -1.0, 1.0);
     vec2 upper = clamp(foot + reach, -1.0, 1.0);
-    place = mix(lower, upper, u);
+    place = mix(lower, upper, sampled ? u : vec2(0.5));
     share = 0.25 * (upper.x - lower.x) * (upper.y - lower.y);
     if (round) {
       share = sampled && dot(place, place) > 1.0 ? 0.0 : share * (8.0 / TWO_PI);

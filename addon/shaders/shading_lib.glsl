@@ -135,7 +135,7 @@ Shadow shading_next_shadow(inout int index, Lit lit, inout vec3 radiance)
     float t_max;
 #ifdef HAS_LIGHT_SHAPES
     bool sampled = frame_sample >= 0.0;
-    vec2 u = vec2(0.5);
+    vec2 u = vec2(0.0);
     if (sampled) {
       u = sampling_2d(sampling_pixel(gl_FragCoord.xy), int(frame_sample), lit.depth * count + index);
     }

@@ -2,6 +2,7 @@
 """What differs between Blender 4.2 and 5.2, in one place; guards ask for the feature where that is possible."""
 
 import bpy
+from mathutils import Matrix
 
 #: From these on materials, worlds and lights always use their nodes; asking for `use_nodes` gives a deprecation
 #: warning.
@@ -20,25 +21,26 @@ def node_tree(owner):
     return owner.node_tree
 
 
-def light_factor(light):
+def light_factor(light, matrix):
     """What multiplies a light's energy, (r, g, b): colour, and from 4.5 exposure, temperature and `normalize`.
 
-    A light that is not normalised gives its energy for each unit of its area, as Cycles has it.
+    A light that is not normalised gives its energy for each unit of its area, as Cycles has it; `matrix` (4, 4) is
+    where it stands.
     """
     color = tuple(light.color)
     if not hasattr(light, "normalize"):
         return color
     factor = 2.0**light.exposure
     if not light.normalize:
-        factor *= _area(light)
+        factor *= _area(light, matrix)
     if light.use_temperature:
         color = tuple(c * t for c, t in zip(color, light.temperature_color, strict=True))
     return tuple(c * factor for c in color)
 
 
-def _area(light):
+def _area(light, matrix):
     """The area by which `normalize` divides; a sun without an angle has none and counts as 1."""
-    return light.area() if light.type != "SUN" or light.angle > 0.0 else 1.0
+    return light.area(matrix_world=Matrix(matrix)) if light.type != "SUN" or light.angle > 0.0 else 1.0
 
 
 def has_geometry_sets():

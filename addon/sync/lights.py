@@ -1,22 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's lights as the engine's, which have no extent."""
+"""Blender's lights as the engine's."""
 
 import numpy as np
 
+from ..engine.primitives import invertible
 from ..engine.scene import Light
 from .closures import read_closure
 from .compat import light_factor, node_tree
 from .nodes import output_source
 from .textures import NodeReader
-
-#: Straight ahead, a small area light shines like a point light of four times its power: P / pi against P / 4 pi.
-_AREA_AHEAD = 4.0
-#: A light that seems smaller than this from the camera, in radians, casts shadows about as sharp as a point's.
-_SHARP = 0.05
-_AS_POINT = {
-    "AREA": "an area light is rendered as a point at its center, bright all around",
-    "SPOT": "a spot is rendered as a point light, bright all around",
-}
 
 
 class Lights:
@@ -24,41 +16,20 @@ class Lights:
 
     def __init__(self, scene, reports):
         self._scene, self._reports = scene, reports
-        self._soft = {}
-        self._as_point = {}
 
     def add(self, obj, matrix):
         """Add the light of a Blender object that stands in the world by `matrix` (4, 4)."""
         light = obj.data
         strength, falls_off = self._emission(light)
-        color = np.multiply(light_factor(light), strength)
+        color = np.multiply(light_factor(light, matrix), strength)
         if not np.isfinite([*matrix.ravel(), light.energy, *color]).all():
             self._reports.warn(f"light {obj.name!r} has a strength or a place that is not finite and gives no light")
             return
-        position = tuple(float(x) for x in matrix[:3, 3])
-        if light.type == "SUN":
-            towards = matrix[:3, 2]
-            if not np.linalg.norm(towards) > 0.0:
-                self._reports.warn(f"light {obj.name!r} is scaled to zero and gives no light")
-                return
-            self._scene.add_light(Light.sun(towards, light.energy, color, shadow=light.use_shadow))
-            self._note_soft(obj, light.angle)
+        made = _MAKERS[light.type](light, np.asarray(matrix, np.float64), color)
+        if made is None:
+            self._reports.warn(f"light {obj.name!r} is scaled to zero or has no size and gives no light")
             return
-        watts = light.energy * (_AREA_AHEAD if light.type == "AREA" else 1.0)
-        made = Light.point(position, watts, color, shadow=light.use_shadow)
-        # One that does not fall off is as bright everywhere as the other at distance 1.
-        self._scene.add_light(made if falls_off else Light.constant(position, made.color, shadow=made.shadow))
-        if light.type in _AS_POINT:
-            self._as_point.setdefault(light.type, {})[obj.name] = None
-        if light.type != "AREA":
-            self._note_soft(obj, self._seen_angle(position, 2.0 * light.shadow_soft_size))
-
-    def finish(self):
-        """Report the lights that are not rendered as they are: a message for each thing that is not."""
-        for kind, names in self._as_point.items():
-            self._reports.warn(f"light {_first_of(names)}: {_AS_POINT[kind]}")
-        if self._soft:
-            self._reports.info(f"light {_first_of(self._soft)}: the size of a light is not rendered, shadows are sharp")
+        self._scene.add_light(made if falls_off else made.without_falloff())
 
     def _emission(self, light):
         """What the light's nodes multiply its energy by, color times strength of an Emission, and whether the light
@@ -78,15 +49,6 @@ class Lights:
         reader.finish()
         return strength, falls_off
 
-    def _seen_angle(self, position, size):
-        """The angle under which the camera sees something of `size`."""
-        distance = np.linalg.norm(np.subtract(position, self._scene.camera.matrix[:3, 3]))
-        return 2.0 * float(np.arctan2(size / 2.0, distance))
-
-    def _note_soft(self, obj, angle):
-        if angle > _SHARP and obj.data.use_shadow and obj.data.energy > 0.0:
-            self._soft[obj.name] = None
-
 
 def _is_falloff(source, light):
     """Whether a strength is that of a Light Falloff node, constant or quadratic, of a light that stands somewhere."""
@@ -104,6 +66,48 @@ def _with_falloff(emission, reader):
     return strength.average, falloff.output.identifier == "Quadratic"
 
 
-def _first_of(names):
-    others = len(names) - 1
-    return repr(next(iter(names))) + (f" and {others} more" if others else "")
+# The light of a Blender light that stands in the world by `matrix` (4, 4), None where it has no direction or no size.
+
+
+def _point(light, matrix, color):
+    return Light.point(_position(matrix), light.energy, color, **_ball(light))
+
+
+def _spot(light, matrix, color):
+    """Its cone is round before the object is scaled, about -Z."""
+    if not invertible(matrix[None])[0]:
+        return None
+    axes = np.diag([1.0, 1.0, -1.0]) @ np.linalg.inv(matrix[:3, :3] / np.abs(matrix[:3, :3]).max())
+    angle = min(light.spot_size, np.pi)  # both are pi in single precision, which is more than pi
+    return Light.spot(_position(matrix), None, light.energy, angle, light.spot_blend, color, axes=axes, **_ball(light))
+
+
+def _area(light, matrix, color):
+    width, height = light.size, light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
+    x, y, z = matrix[:3, 0] * width, matrix[:3, 1] * height, matrix[:3, 2]
+    if not (np.linalg.norm(np.cross(x, y)) > 0.0 and np.linalg.norm(z) > 0.0):
+        return None
+    shape = "ELLIPSE" if light.shape in ("DISK", "ELLIPSE") else "RECTANGLE"
+    spread = min(light.spread, np.pi)
+    return Light.area(
+        _position(matrix), x, y, light.energy, color, shape=shape, spread=spread, direction=-z, shadow=light.use_shadow
+    )
+
+
+def _sun(light, matrix, color):
+    if not np.linalg.norm(matrix[:3, 2]) > 0.0:
+        return None
+    angle = min(light.angle, np.pi)
+    return Light.sun(matrix[:3, 2], light.energy, color, angle=angle, shadow=light.use_shadow)
+
+
+_MAKERS = {"POINT": _point, "SPOT": _spot, "AREA": _area, "SUN": _sun}
+
+
+def _position(matrix):
+    return tuple(float(x) for x in matrix[:3, 3])
+
+
+def _ball(light):
+    """What point lights and spots share. Their radius is not scaled with the object."""
+    return {"radius": light.shadow_soft_size, "soft": light.use_soft_falloff, "shadow": light.use_shadow}

@@ -53,7 +53,6 @@ def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report, sp
     with timed(statistics.seconds, "place"):
         objects.place()
         shadings.finish()
-    lights.finish()
     return scene
 
 

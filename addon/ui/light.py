@@ -28,8 +28,28 @@ class CONIC_LIGHT_PT_light(PropertiesPanel, bpy.types.Panel):
         if hasattr(light, "exposure"):
             column.prop(light, "exposure")
             column.prop(light, "normalize")
-        if light.type in {"AREA", "SPOT"}:
-            layout.label(text=f"Not a {light.type.lower()} light yet: shines as a point light", icon="INFO")
+        _draw_shape(layout.column(), light)
+        layout.prop(light, "use_shadow", text="Cast Shadow")
+
+
+def _draw_shape(column, light):
+    if light.type == "SUN":
+        column.prop(light, "angle")
+    elif light.type == "AREA":
+        column.prop(light, "shape")
+        if light.shape in {"RECTANGLE", "ELLIPSE"}:
+            column.prop(light, "size", text="Size X")
+            column.prop(light, "size_y", text="Y")
+        else:
+            column.prop(light, "size")
+        column.prop(light, "spread")
+    else:
+        column.prop(light, "shadow_soft_size", text="Radius")
+        column.prop(light, "use_soft_falloff")
+    if light.type == "SPOT":
+        column.prop(light, "spot_size")
+        column.prop(light, "spot_blend")
+        column.prop(light, "show_cone")
 
 
 register, unregister = bpy.utils.register_classes_factory((CONIC_LIGHT_PT_light,))

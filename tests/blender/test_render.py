@@ -196,13 +196,13 @@ def test_animation_renders_each_frame_and_warns_once(scene, tmp_path, watch):
     for frame, x in ((1, -1.0), (3, 1.0)):
         sphere.location.x = x
         sphere.keyframe_insert("location", index=0, frame=frame)
-    bpy.ops.object.light_add(type="AREA", location=(0.0, 0.0, 20.0))
+    scene.render.use_motion_blur = True
     scene.frame_start, scene.frame_end = 1, 3
     scene.render.filepath = str(tmp_path / "frame_")
     bpy.ops.render.render(animation=True)
     columns = [np.nonzero(is_sphere(picture(tmp_path / f"frame_000{f}.exr")))[1].mean() for f in (1, 2, 3)]
     np.testing.assert_allclose(np.array(columns) + 0.5 - WIDTH / 2, [-WIDTH / 6, 0.0, WIDTH / 6], atol=0.6)
-    assert [level for level, message in told if "Area" in message] == ["WARNING"]
+    assert [level for level, message in told if "motion blur" in message] == ["WARNING"]
 
 
 class Watched:

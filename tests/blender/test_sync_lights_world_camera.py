@@ -45,15 +45,55 @@ def test_sun():
     assert made.color == pytest.approx((0.9549297,) * 3, rel=1e-5)  # as in Cycles
 
 
-def test_spot_is_a_point_of_the_same_power():
-    made, synced = light("SPOT", energy=100.0)
-    assert made.color[0] / 4.0 == pytest.approx(0.6332574, rel=1e-5) and synced.warnings("'lamp'", "spot")
+def test_balls():
+    """A radius is not scaled with the object, as in Cycles."""
+    made, synced = light("POINT", Matrix.Scale(3.0, 4), shadow_soft_size=0.5, use_soft_falloff=False)
+    assert made.radius == 0.5 and not made.soft and not synced.messages
 
 
-def test_area_is_as_bright_straight_ahead():
-    made, synced = light("AREA", energy=100.0, size=0.01)
-    assert made.color[0] / 4.0 == pytest.approx(2.53301, rel=1e-4)  # measured in Cycles
-    assert synced.warnings("'lamp'", "area")
+def test_spot():
+    """As bright as a point of the same power in the middle of its cone, which is about -Z and stretched as it is."""
+    turned = Euler((0.3, -0.5, 2.0)).to_matrix().to_4x4()
+    stretched = turned @ Matrix.Diagonal((1.0, 2.0, 0.5, 1.0))
+    made, synced = light("SPOT", stretched, energy=100.0, spot_size=1.0, spot_blend=0.25, shadow_soft_size=0.1)
+    assert made.kind == LightKind.SPOT and made.soft and made.radius == pytest.approx(0.1) and not synced.messages
+    assert made.color[0] / 4.0 == pytest.approx(0.6332574, rel=1e-5)
+    assert (made.angle, made.blend) == pytest.approx((1.0, 0.25))
+    for local in ((0, 0, -1), (0.1, 0.2, -0.7)):
+        seen = np.array(made.axes) @ (stretched.to_3x3() @ Vector(local))
+        assert seen / np.linalg.norm(seen) @ (0, 0, 1) == pytest.approx(-local[2] / np.linalg.norm(local), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("settings", "kind", "sides"),
+    (
+        ({"shape": "SQUARE", "size": 0.5, "size_y": 9.0}, LightKind.RECTANGLE, (1.0, 1.5)),
+        ({"shape": "RECTANGLE", "size": 0.5, "size_y": 2.0}, LightKind.RECTANGLE, (1.0, 6.0)),
+        ({"shape": "DISK", "size": 0.5, "size_y": 9.0}, LightKind.ELLIPSE, (1.0, 1.5)),
+        ({"shape": "ELLIPSE", "size": 0.5, "size_y": 2.0}, LightKind.ELLIPSE, (1.0, 6.0)),
+    ),
+)
+def test_area_lights(settings, kind, sides):
+    turned = Euler((0.3, -0.5, 2.0)).to_matrix().to_4x4()
+    made, synced = light("AREA", turned @ Matrix.Diagonal((2.0, 3.0, 4.0, 1.0)), energy=100.0, **settings)
+    assert made.kind == kind and made.angle == np.pi and not synced.messages
+    expected = np.array(turned.to_3x3()) @ np.diag([sides[0] / 2.0, sides[1] / 2.0, -1.0])
+    np.testing.assert_allclose(np.transpose(made.axes), expected, atol=1e-5)
+    assert made.color[0] / 4.0 == pytest.approx(2.53301, rel=1e-4)  # measured in Cycles, from far off
+
+
+@pytest.mark.parametrize("kind", ("SUN", "SPOT", "AREA"))
+def test_a_light_that_is_scaled_to_zero_is_named(kind):
+    add_camera()
+    link(bpy.data.lights.new("flat", kind), "flat", scale=(0.0, 0.0, 0.0))
+    synced = sync()
+    assert synced.warnings("'flat'", "gives no light") and not synced.scene.lights
+
+
+@SINCE_4_5
+def test_a_light_that_is_not_normalized_is_as_bright_as_its_size_in_the_world():
+    made, _ = light("AREA", Matrix.Diagonal((2.0, 3.0, 4.0, 1.0)), energy=100.0, size=0.5, normalize=False)
+    assert made.color[0] == pytest.approx(100.0 / np.pi**2 * 1.5, rel=1e-5)
 
 
 @SINCE_4_5
@@ -88,12 +128,13 @@ def test_light_nodes():
     assert sync().scene.lights[0].color == pytest.approx((2.0, 1.0, 0.5))
 
 
+@pytest.mark.parametrize("radius", (0.0, 0.5))
 @pytest.mark.parametrize("output", ("Constant", "Quadratic", "Linear"))
-def test_falloff(output):
+def test_falloff(output, radius):
     """Radiance of a white plane that faces the lamp, by the formulas of Cycles' Light Falloff node."""
     add_camera()
     data = bpy.data.lights.new("lamp", "POINT")
-    data.energy, data.color = 80.0, (1.0, 0.5, 0.25)
+    data.energy, data.color, data.shadow_soft_size = 80.0, (1.0, 0.5, 0.25), radius
     if bpy.app.version < (5, 2, 0):
         data.use_nodes = True
     emission = next(n for n in data.node_tree.nodes if n.type == "EMISSION")
@@ -105,42 +146,10 @@ def test_falloff(output):
     if output == "Linear":
         assert made.kind == LightKind.POINT and synced.warnings("'lamp'", "'Light Falloff'")
         return
-    assert made.kind == (LightKind.CONSTANT if output == "Constant" else LightKind.POINT)
+    assert made.kind == (LightKind.CONSTANT if output == "Constant" and not radius else LightKind.POINT)
+    assert made.radius == radius and (made.kind == LightKind.CONSTANT or made.falls_off == (output == "Quadratic"))
     assert made.color == pytest.approx([80.0 * 0.5 * c / (4.0 * np.pi**2) for c in (1.0, 0.25, 0.25)])
     assert made.position == (0.0, 0.0, 3.0) and not synced.messages
-
-
-def test_soft_lights_are_named_in_one_message():
-    add_camera()
-    for name in "abc":
-        data = bpy.data.lights.new(name, "POINT")
-        data.shadow_soft_size = 0.5
-        link(data, name)
-    messages = sync().messages
-    assert len(messages) == 1 and messages[0][0] == "INFO" and "'a' and 2 more: the size" in messages[0][1]
-
-
-@pytest.mark.parametrize("change", ({"shadow_soft_size": 0.1}, {"use_shadow": False}, {"energy": 0.0}))
-def test_a_size_that_is_not_seen_is_not_told(change):
-    """Ten meters away: a light of 20 cm, one without shadows, one that is dark."""
-    add_camera()
-    data = bpy.data.lights.new("lamp", "POINT")
-    data.shadow_soft_size = 0.5
-    for name, value in change.items():
-        setattr(data, name, value)
-    link(data, "lamp")
-    assert not sync().messages
-
-
-@pytest.mark.parametrize("kind", ("SPOT", "AREA"))
-def test_lights_drawn_as_points_are_named_in_one_message(kind):
-    add_camera()
-    for name in "abc":
-        data = bpy.data.lights.new(name, kind)
-        if kind == "SPOT":
-            data.shadow_soft_size = 0.0
-        link(data, name)
-    assert len(sync().warnings("light 'a' and 2 more", kind.lower(), "bright all around")) == 1
 
 
 @pytest.mark.parametrize("kind", ["POINT", "SUN", "SPOT", "AREA"])

@@ -125,11 +125,18 @@ def test_render_panels_show_every_setting():
     assert shown >= set(DEFAULTS) | {"film_transparent"}
 
 
-@pytest.mark.parametrize("kind", ["POINT", "SUN", "SPOT", "AREA"])
-def test_light_panel_shows_type_color_and_power(kind):
+@pytest.mark.parametrize(
+    ("kind", "shape"),
+    [
+        ("POINT", {"shadow_soft_size", "use_soft_falloff"}),
+        ("SUN", {"angle"}),
+        ("SPOT", {"shadow_soft_size", "use_soft_falloff", "spot_size", "spot_blend"}),
+        ("AREA", {"shape", "size", "spread"}),
+    ],
+)
+def test_light_panel_shows_what_is_rendered(kind, shape):
     drawn = draw(light.CONIC_LIGHT_PT_light, light=bpy.data.lights.new("light", kind))
-    assert {"type", "color", "energy"} <= set(drawn.shown)
-    assert bool(drawn.text) == (kind in {"SPOT", "AREA"}), "what is not done is said"
+    assert {"type", "color", "energy", "use_shadow"} | shape <= set(drawn.shown) and not drawn.text
 
 
 def described():
