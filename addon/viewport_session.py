@@ -26,20 +26,27 @@ _SHOWN_TYPES = sorted(
 
 
 class LogReporter:
-    """Passes messages to the log, each once: a viewport has no reports. `warnings`: those so far."""
+    """Passes messages to the log: a viewport has no reports. A message that holds on from one reading of the scene to
+    the next is logged once. `warnings`: how many there are of the scene as it was read last."""
 
     LEVELS = {"INFO": logging.INFO, "WARNING": logging.WARNING, "ERROR": logging.ERROR}
 
     def __init__(self):
-        self.seen = set()
-        self.warnings = 0
+        self._before, self._now = {}, {}
+
+    def begin(self):
+        """The scene is read anew: what is not said again is no longer so."""
+        self._before, self._now = self._now, {}
 
     def __call__(self, level, message):
         """Log `message`; `level` is INFO, WARNING or ERROR."""
-        if message not in self.seen:
-            self.seen.add(message)
-            self.warnings += level != "INFO"
+        if message not in self._now and message not in self._before:
             log.log(self.LEVELS[level], message)
+        self._now[message] = level
+
+    @property
+    def warnings(self):
+        return sum(level != "INFO" for level in self._now.values())
 
 
 class ViewportSession:
@@ -84,6 +91,7 @@ class ViewportSession:
     def read(self, depsgraph, size, camera, space):
         """Read the scene; load it unless it is what is loaded: selecting an object changes nothing."""
         self.stale, self.error = False, ""
+        self.report.begin()
         statistics, reading = Statistics("Viewport", width=size[0], height=size[1]), SyncStatistics()
         with timed(statistics.seconds, "read"):
             scene = sync_scene(depsgraph, *size, camera=camera, report=self.report, space=space, statistics=reading)

@@ -72,7 +72,7 @@ def _own_made(obj, depsgraph):
     if obj.type != "META" and not _has_faces(obj):  # of a family of metaballs one has the faces of all
         if obj.type == "CURVE" and obj.conic.strand_radius > 0.0:
             return _strands(Copies(obj, "CURVE", obj.data, _matrix(obj)), depsgraph)
-        remedy = "a bevel, an extrusion, a filling or a radius of strands" if noun == "curve" else "an extrusion"
+        remedy = "a bevel, an extrusion, a filling or a Strand Radius" if noun == "curve" else "an extrusion"
         return "NONE", f"not rendered: this {noun} has no surface; give it {remedy}"
     if primitive in ("AUTO", "MESH"):
         return "MESH", f"mesh: made from a {noun}"

@@ -55,14 +55,18 @@ class NodeReader:
 
     def not_understood(self, source, instead):
         """Report the node of `source` with what is used instead of it: all of that in one message."""
-        replacements = self._replaced.setdefault(source.node.name, [])
+        cause = self._values.to_blame(source)
+        node = repr(cause.node.name)
+        if cause is not source:
+            node += f" ({cause.output.name}), before {source.node.name!r},"
+        replacements = self._replaced.setdefault(node, [])
         if instead not in replacements:
             replacements.append(instead)
 
     def finish(self):
         """Report the nodes that were not understood."""
-        for name, replacements in self._replaced.items():
-            self.warn(f"node {name!r} is not rendered; {listed(replacements, 'is', 'are')} used instead")
+        for node, replacements in self._replaced.items():
+            self.warn(f"node {node} is not rendered; {listed(replacements, 'is', 'are')} used instead")
 
     def left_out(self, source, what):
         """Report the node of `source`, once, and that there is nothing instead of `what` it makes."""

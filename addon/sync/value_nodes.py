@@ -35,7 +35,7 @@ class ValueNodes:
     def _read(self, source):
         if source.node is None:
             return constant(source.constant)
-        key = (*(group.name for group in source.groups), source.node.name, source.output.identifier)
+        key = _key(source)
         if key not in self._known:
             read = _NODES.get(source.type)
             if read is not None:
@@ -43,6 +43,15 @@ class ValueNodes:
             else:
                 self._known[key] = self._attributes.read(source) if self._attributes is not None else None
         return self._known[key]
+
+    def to_blame(self, source):
+        """The `Source` because of which `read` gave None for one: itself, or the first on the way to it."""
+        if source.type in _NODES:
+            feeding = (source.input(i) for i, socket in enumerate(source.node.inputs) if socket.enabled)
+            for one in feeding:
+                if one.node is not None and self._known.get(_key(one), one) is None:
+                    return self.to_blame(one)
+        return source
 
     def _inputs(self, source):
         """The expressions of a node's enabled inputs; None where one has none."""
@@ -125,6 +134,11 @@ class ValueNodes:
         """What a function makes of all inputs of a node."""
         inputs = self._inputs(source)
         return None if inputs is None else made(function, settings, tuple(inputs))
+
+
+def _key(source):
+    """What tells an output of a node, in its groups, from all others."""
+    return (*(group.name for group in source.groups), source.node.name, source.output.identifier)
 
 
 def constant(value):

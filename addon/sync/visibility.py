@@ -58,10 +58,12 @@ def _seen_by(obj):
 
 def shown_in(space):
     """The question whether a viewport, a SpaceView3D, shows an evaluated object of the scene: local view, hidden
-    collections and types of object. `space` None: a render, which shows all."""
+    collections and types of object. `space` None: a render, which shows all. A local view keeps the scene's lights:
+    in the dark there would be nothing to see of what one wants to look at."""
     if space is None:
         return lambda obj: True
-    return lambda obj: obj.original.visible_in_viewport_get(space)
+    is_local = space.local_view is not None
+    return lambda obj: (is_local and obj.type == "LIGHT") or obj.original.visible_in_viewport_get(space)
 
 
 def shows_hair(obj):

@@ -411,3 +411,14 @@ def test_menu_switch_takes_its_item(item):
         assert read.diffuse == pytest.approx((0.1, 0.2, 0.3)) and read.diffuse_image == -1 and not synced.messages
     else:
         assert read.diffuse_image == 0 and len(synced.warnings("'Ambient Occlusion'")) == 1 == len(synced.messages)
+
+
+def test_the_node_that_is_not_understood_is_named_not_the_ones_behind_it():
+    add_camera()
+    made, tree, output = material("by place")
+    shader = node(tree, "BsdfDiffuse", output.inputs["Surface"])
+    ramp = node(tree, "ValToRGB", shader.inputs["Color"])
+    separate = node(tree, "SeparateXYZ", ramp.inputs[0], output="Z")
+    node(tree, "NewGeometry", separate.inputs[0], output="Position")
+    quad().data.materials.append(made)
+    assert sync().warnings("node 'Geometry' (Position), before 'Color Ramp', is not rendered")

@@ -100,6 +100,12 @@ def loads(monkeypatch):
     return seen
 
 
+def add_lamp():
+    lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "POINT"))
+    bpy.context.collection.objects.link(lamp)
+    return lamp
+
+
 def sphere_at(pixels):
     """Mean column and area of what is darker than the sky, in pixels."""
     dark = pixels[..., 0] < 0.5
@@ -157,10 +163,12 @@ def test_types_that_a_viewport_hides_are_not_drawn_without_an_update(view, loads
 
 def test_local_view_shows_its_objects_without_an_update(view, space):
     view.space_data = space
+    add_lamp()
     bpy.ops.conic.sphere_add(location=(2.0, 0.0, 0.0), radius=0.5)
     both = sphere_at(view.settle())[1]
     bpy.ops.view3d.localview()
     column, area = sphere_at(view.settle())
+    assert "warning" not in view.engine.text, "the scene's lamp lights the local view too"
     assert area < 0.5 * both and column == pytest.approx(WIDTH / 2 + WIDTH / 3, abs=0.5)
     bpy.ops.view3d.localview()
     assert sphere_at(view.settle())[1] == both
@@ -247,3 +255,19 @@ def test_a_defect_is_shown_and_its_traceback_logged_once(view, monkeypatch, capl
     assert len(traces) == (0 if isinstance(error, MemoryError) else 1)
     view.session.mark()
     assert sphere_at(view.settle())[1] > 0
+
+
+def test_the_count_of_warnings_is_that_of_the_scene_as_it_is(view, caplog):
+    """A broken lamp, and so no light; mended; broken again, which is told again."""
+    lamp = add_lamp()
+    for energy, count in ((float("nan"), 2), (10.0, 0), (float("nan"), 2)):
+        caplog.clear()
+        lamp.data.energy = energy
+        view.session.mark()
+        view.settle()
+        assert (f"{count} warnings" in view.engine.text) == (count > 0)
+        assert ("warning" in view.engine.text) == (count > 0)
+        assert len(caplog.records) == count
+        view.session.mark()  # read once more: nothing is said twice
+        view.settle()
+        assert len(caplog.records) == count
