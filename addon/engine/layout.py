@@ -228,6 +228,10 @@ MATERIAL = _record(
     ("reflect_attribute", "int", ""),
     ("transmit_attribute", "int", ""),
     ("glow_attribute", "int", ""),
+    ("grazing", "vec3", "what the mirror's share grows to at grazing incidence where that is more"),
+    ("roughness", "float", "of the mirror; its microfacets' alpha is the square"),
+    ("edge", "vec3", "F82 tint: what is left of the mirror's share near 82 degrees"),
+    ("transmit_roughness", "float", ""),
 )
 LIGHT = _record(
     "light",

@@ -55,6 +55,8 @@ class MaterialTable:
             "HAS_IMAGES": lambda m: any(getattr(m, f"{role}_image") >= 0 for role in _ROLES),
             "HAS_ATTRIBUTES": lambda m: any(getattr(m, f"{role}_attribute") for role in _ROLES),
             "HAS_ABSORPTION": lambda m: max(m.absorption) > 0.0,
+            "HAS_ROUGHNESS": lambda m: max(m.roughness, m.transmit_roughness) > 0.0,
+            "HAS_METALS": lambda m: max(m.grazing) > 0.0 or min(m.edge) < 1.0,
             "HAS_CULLING": lambda m: m.cull_back,
             "CULLED_SHADOWS": lambda m: m.cull_back_shadow,
         }

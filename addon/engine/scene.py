@@ -32,6 +32,11 @@ class Material:
     the primitive's where its geometry has it, else the instance's, else 0. With `fresnel` the mirror ray has weight r
     F, the refracted one t (1 - F), and the diffuse share is d (1 - F), F the exact unpolarised reflectance; without it
     the shares are the constants, as NFF has them.
+
+    Metals are without `fresnel`: their share grows from r to `grazing` at grazing incidence after Schlick, and `edge`
+    tints it near 82 degrees (Hoffman 2023, Generating Real-Time Rendering's F82). `roughness` is that of Blender: of
+    microfacets of the GGX distribution whose alpha is its square; with it the lights have highlights, and with more
+    than one sample the rays are spread.
     """
 
     diffuse: tuple = (0.8, 0.8, 0.8)
@@ -51,30 +56,42 @@ class Material:
     reflect_attribute: str = ""
     transmit_attribute: str = ""
     glow_attribute: str = ""
+    roughness: float = 0.0  # of the mirror
+    transmit_roughness: float = 0.0
+    grazing: tuple = (0.0, 0.0, 0.0)
+    edge: tuple = (1.0, 1.0, 1.0)
     bounds_body: bool = True  # False: a single sheet, which bends light but is no border of a medium
     cull_back: bool = False  # rays that meet the back pass through, shadow rays only with the next
     cull_back_shadow: bool = False
 
     def __post_init__(self):
-        for name in ("diffuse", "reflect", "transmit", "glow", "absorption", "highlight"):
+        for name in ("diffuse", "reflect", "transmit", "glow", "absorption", "highlight", "grazing", "edge"):
             object.__setattr__(self, name, _checked_color(f"material: {name}", getattr(self, name)))
         if not (np.isfinite(self.ior) and self.ior > 0.0):
             raise SceneError(f"material: the index of refraction is {self.ior}; it must be positive")
         if not (np.isfinite(self.shine) and self.shine >= 0.0):
             raise SceneError(f"material: shine is {self.shine}; it must be finite and not negative")
+        for name in ("roughness", "transmit_roughness"):
+            if not 0.0 <= getattr(self, name) <= 1.0:
+                raise SceneError(f"material: {name} is {getattr(self, name)}; it must lie between 0 and 1")
 
     @classmethod
-    def mirror(cls, color=(1.0, 1.0, 1.0)):
-        return cls(diffuse=0.0, reflect=color, fresnel=False)
+    def mirror(cls, color=(1.0, 1.0, 1.0), roughness=0.0):
+        return cls(diffuse=0.0, reflect=color, roughness=roughness, fresnel=False)
 
     @classmethod
-    def glass(cls, color=(1.0, 1.0, 1.0), ior=1.5, absorption=(0.0, 0.0, 0.0)):
-        return cls(diffuse=0.0, reflect=1.0, transmit=color, ior=ior, absorption=absorption)
+    def metal(cls, color, roughness=0.0, edge=(1.0, 1.0, 1.0)):
+        return cls(diffuse=0.0, reflect=color, roughness=roughness, grazing=1.0, edge=edge, fresnel=False)
 
     @classmethod
-    def plastic(cls, color, ior=1.5):
-        """A diffuse body under a clear smooth surface."""
-        return cls(diffuse=color, reflect=1.0, ior=ior)
+    def glass(cls, color=(1.0, 1.0, 1.0), ior=1.5, absorption=(0.0, 0.0, 0.0), roughness=0.0):
+        rough = {"roughness": roughness, "transmit_roughness": roughness}
+        return cls(diffuse=0.0, reflect=1.0, transmit=color, ior=ior, absorption=absorption, **rough)
+
+    @classmethod
+    def plastic(cls, color, ior=1.5, roughness=0.0):
+        """A diffuse body under a clear surface."""
+        return cls(diffuse=color, reflect=1.0, ior=ior, roughness=roughness)
 
 
 @dataclass(frozen=True)

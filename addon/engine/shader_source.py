@@ -35,6 +35,8 @@ FEATURES = frozenset(
         "HAS_SHADOW_CATCHER",
         "HAS_CULLING",
         "HAS_LIGHT_SHAPES",
+        "HAS_ROUGHNESS",
+        "HAS_METALS",
         "TINTED_SHADOWS",
         "CULLED_SHADOWS",
         "COUNT_RAYS",

@@ -1,5 +1,6 @@
 /* The paper's colour class (3.1.1), each colour a constant, times an image by uv, times an attribute. */
 #include "ray_lib.glsl"
+#include "optics_lib.glsl"
 #include <material>
 #ifdef HAS_IMAGES
 #include "image_lib.glsl"
@@ -34,6 +35,25 @@ Material material_at(Surface surface)
   return material;
 }
 
+/* The share that is mirrored at a cosine of incidence, where a smooth dielectric has the reflectance `fresnel`. */
+vec3 material_mirror(Material material, float cosine, float fresnel)
+{
+  if (material.fresnel > 0.5) {
+    return material.reflect * fresnel;
+  }
+#ifdef HAS_METALS
+  return optics_metal(material.reflect, material.grazing, material.edge, cosine);
+#else
+  return material.reflect;
+#endif
+}
+
+/* The share that goes through there. */
+vec3 material_through(Material material, float fresnel)
+{
+  return material.transmit * (material.fresnel > 0.5 ? 1.0 - fresnel : 1.0);
+}
+
 /* Leave nothing of a material but what it transmits. */
 void material_hide(inout Material material)
 {
@@ -41,4 +61,5 @@ void material_hide(inout Material material)
   material.reflect = vec3(0.0);
   material.glow = vec3(0.0);
   material.highlight = vec3(0.0);
+  material.grazing = vec3(0.0);
 }

@@ -19,6 +19,17 @@ float optics_fresnel(float cos_i, float eta, out float cos_t)
   return 0.5 * (r_s * r_s + r_p * r_p);
 }
 
+/* Reflectance of a metal that has the share `normal` at normal incidence and `grazing`, if that is more, at grazing incidence
+ * (Schlick 1994); near 82 degrees, where the cosine is 1/7, it is `edge` of that (Hoffman 2023). */
+vec3 optics_metal(vec3 normal, vec3 grazing, vec3 edge, float cosine)
+{
+  vec3 rise = max(grazing - normal, 0.0);
+  float s = clamp(1.0 - cosine, 0.0, 1.0);
+  float s5 = s * s * s * s * s;
+  vec3 at_edge = normal + rise * 0.46266436; /* (6/7)^5 */
+  return max(normal + rise * s5 - at_edge * (1.0 - edge) * (17.651259 * cosine * s5 * s), 0.0); /* 7 (7/6)^6 */
+}
+
 /* (48). */
 vec3 optics_mirror(vec3 direction, vec3 normal)
 {

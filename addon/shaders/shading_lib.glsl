@@ -5,6 +5,9 @@
 #include "medium_lib.glsl"
 #include "optics_lib.glsl"
 #include "light_lib.glsl"
+#ifdef HAS_ROUGHNESS
+#include "gloss_lib.glsl"
+#endif
 
 #ifdef TINTED_SHADOWS
 #define SHADING_SHADOWS_PASS true
@@ -49,6 +52,11 @@ struct Lit {
 #ifdef HAS_LIGHT_SHAPES
   int depth; /* of the path ray */
 #endif
+#ifdef HAS_ROUGHNESS
+  Material material; /* with shares of the pixel */
+  float eta;         /* index on the lit side over the one beyond */
+  ivec4 beyond;      /* media around the other side */
+#endif
 };
 
 /* A ray towards a light. */
@@ -91,10 +99,37 @@ Scattered shading_nothing(Path path)
   return scattered;
 }
 
-/* What the light that reaches a lit surface from `direction` adds to the pixel. */
+/* Whether light that comes from the other side of a lit surface is to be seen. */
+bool shading_lit_through(Lit lit)
+{
+#ifdef HAS_ROUGHNESS
+  return gloss_transmission_is_rough(lit.material, lit.eta);
+#else
+  return false;
+#endif
+}
+
+/* Whether lights add anything. */
+bool shading_is_lit(Lit lit)
+{
+#ifdef HAS_ROUGHNESS
+  if (gloss_mirror_is_rough(lit.material) || shading_lit_through(lit)) {
+    return true;
+  }
+#endif
+  return optics_largest(lit.diffuse) > 0.0 || optics_largest(lit.highlight) > 0.0;
+}
+
+/* What the light that reaches a lit surface from `direction` adds to the pixel; `cosine` is its to the surface's normal. */
 vec3 shading_lit_by(Lit lit, vec3 radiance, vec3 direction, float cosine)
 {
-  vec3 share = lit.diffuse * cosine;
+  vec3 share = lit.diffuse * max(cosine, 0.0);
+#ifdef HAS_ROUGHNESS
+  share += gloss_lit(lit.material, lit.eta, lit.normal, -lit.view, direction);
+  if (cosine <= 0.0) {
+    return radiance * share;
+  }
+#endif
   float alignment = max(dot(optics_mirror(lit.view, lit.normal), direction), 0.0);
   if (optics_largest(lit.highlight) > 0.0 && alignment > 0.0) {
     share += lit.highlight * pow(alignment, lit.shine);
@@ -110,7 +145,7 @@ vec3 shading_shadow_origin(Lit lit, vec3 direction)
 #ifdef HAS_TRIANGLE
   vec3 normal = lit.surface.geometric_normal;
   float side = dot(lit.normal, normal);
-  if (side * dot(direction, normal) < 0.0 && side * dot(lit.surface.lift, normal) > 0.0) {
+  if (dot(lit.normal, direction) > 0.0 && side * dot(direction, normal) < 0.0 && side * dot(lit.surface.lift, normal) > 0.0) {
     origin += lit.surface.lift;
   }
 #endif
@@ -147,7 +182,7 @@ Shadow shading_next_shadow(inout int index, Lit lit, inout vec3 radiance)
     vec3 arriving = light_at(light, lit.surface.position, direction, t_max);
 #endif
     float cosine = dot(lit.normal, direction);
-    if (cosine <= 0.0) {
+    if (cosine <= 0.0 && !shading_lit_through(lit)) {
       continue;
     }
     vec3 contribution = shading_lit_by(lit, arriving, direction, cosine);
@@ -163,6 +198,9 @@ Shadow shading_next_shadow(inout int index, Lit lit, inout vec3 radiance)
     }
     shadow.ray = ray;
     shadow.t_max = t_max;
+#ifdef HAS_ROUGHNESS
+    shadow.media = cosine > 0.0 ? lit.media : lit.beyond;
+#endif
     shadow.contribution = contribution;
     shadow.tint = vec3(1.0);
     break;
@@ -220,9 +258,8 @@ float shading_caught(vec3 lit, vec3 unshadowed)
 }
 
 /* The reflected ray. An interpolated normal may bend it into the surface: then it grazes. */
-Ray shading_reflected(Surface surface, vec3 direction, vec3 normal, vec3 face)
+Ray shading_reflected(Surface surface, vec3 mirrored, vec3 face)
 {
-  vec3 mirrored = optics_mirror(direction, normal);
   float outside = dot(mirrored, face);
   if (outside <= 0.0) {
     mirrored = normalize(mirrored + (1e-3 - outside) * face);
@@ -308,16 +345,49 @@ Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout f
   float cos_t;
   float fresnel = optics_fresnel(cos_i, eta, cos_t);
   bool total = transmits && cos_t == 0.0;
-  vec3 mirror = material.reflect;
-  vec3 through = total ? vec3(0.0) : material.transmit;
-  vec3 diffuse = material.diffuse;
-  if (material.fresnel > 0.5) {
-    mirror *= fresnel;
-    through *= 1.0 - fresnel;
-    diffuse *= 1.0 - fresnel * optics_largest(material.reflect);
-  }
-  else if (total) {
+  vec3 mirror = material_mirror(material, cos_i, fresnel);
+  vec3 through = total ? vec3(0.0) : material_through(material, fresnel);
+  bool scatters = false; /* what goes through; facets that reflect totally are then those of the mirror alone */
+#ifdef HAS_ROUGHNESS
+  scatters = frame_sample >= 0.0 && gloss_transmission_is_rough(material, eta);
+#endif
+  if (total && material.fresnel < 0.5 && !scatters) {
     mirror += material.transmit;
+  }
+  vec3 mirrored = optics_mirror(incoming, normal);
+  vec3 bent = optics_refract(incoming, normal, cos_i, cos_t, eta);
+  vec3 diffuse = material.diffuse;
+#ifdef HAS_ROUGHNESS
+  if (gloss_mirror_is_rough(material)) {
+    float mean = microfacet_mean_cosine(cos_i, material.roughness * material.roughness);
+    fresnel = optics_fresnel(mean, eta, cos_t);
+  }
+  lit.material = material;
+  lit.material.reflect *= path.weight;
+  lit.material.grazing *= path.weight;
+  lit.material.transmit *= path.weight;
+  lit.eta = eta;
+  lit.beyond = beyond;
+  if (frame_sample >= 0.0) {
+    /* The same facet for both where they are as rough: together they keep what comes in. Lights use numbers from 0 on. */
+    vec2 u = sampling_2d(sampling_pixel(gl_FragCoord.xy), int(frame_sample), -path.depth);
+    if (gloss_mirror_is_rough(material)) {
+      mirrored = gloss_mirrored(material, eta, normal, incoming, u, mirror);
+    }
+    if (scatters) {
+      bent = gloss_refracted(material, eta, normal, incoming, u, through);
+    }
+  }
+  else {
+    float blunt = gloss_blunt(material);
+    diffuse += blunt * material.reflect;
+    mirror *= gloss_sharpness(material.roughness);
+    lit.material.reflect *= 1.0 - blunt;
+    lit.material.grazing *= 1.0 - blunt;
+  }
+#endif
+  if (material.fresnel > 0.5) {
+    diffuse *= 1.0 - fresnel * optics_largest(material.reflect);
   }
   lit.surface = surface;
   lit.normal = normal;
@@ -337,6 +407,9 @@ Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout f
     goes_on = false;
     lit.diffuse = diffuse; /* whatever the path weighs, it is a ratio that is asked for */
     lit.highlight = material.highlight;
+#ifdef HAS_ROUGHNESS
+    lit.material = material;
+#endif
   }
 #endif
   mirror *= path.weight;
@@ -346,12 +419,12 @@ Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout f
     scattered.refracts = optics_largest(through) > frame_weight_cutoff;
   }
   if (scattered.reflects) {
-    Ray ray = shading_reflected(surface, incoming, normal, face);
+    Ray ray = shading_reflected(surface, mirrored, face);
     scattered.reflected = shading_path(ray, 1e30, mirror, path.depth + 1, path.media);
   }
   if (scattered.refracts && !culled) {
     int kind = eta == 1.0 ? path.ray.kind : RAY_TRANSMISSION;
-    Ray ray = shading_refracted(surface, optics_refract(incoming, normal, cos_i, cos_t, eta), face, kind);
+    Ray ray = shading_refracted(surface, bent, face, kind);
     scattered.refracted = shading_path(ray, 1e30, through, path.depth + 1, beyond);
   }
   return scattered;

@@ -71,8 +71,7 @@ void main()
         radiance = vec3(0.0);
       }
 #endif
-      bool shaded = optics_largest(lit.diffuse) > 0.0 || optics_largest(lit.highlight) > 0.0;
-      light = shaded ? 0 : int(frame_light_count);
+      light = shading_is_lit(lit) ? 0 : int(frame_light_count);
     }
 
     if (light >= 0) {

@@ -1,7 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The shader nodes that are understood, each as `Lobes`."""
 
-from .lobes import Lobes, dielectric_coat, ior_of_reflectance, metal, normal_reflectance, sharpness
+from .lobes import (
+    Lobes,
+    conductor_reflectance,
+    dielectric_body,
+    dielectric_coat,
+    ior_of_reflectance,
+    metal,
+    mirror,
+    normal_reflectance,
+)
 from .textures import listed
 from .values import Value
 
@@ -66,7 +75,6 @@ def _principled(source, reader):
         specular=number("Specular IOR Level"),
         tint=reader.color(source.input("Specular Tint")),
     )
-    _report_rough(source, reader, number("Transmission Weight"), number("Roughness"))
     coat = number("Coat Weight")
     if coat > 0.0:
         tint = Value((coat,) * 3)
@@ -89,17 +97,11 @@ def principled(base, *, metallic=0.0, roughness=0.5, transmission=0.0, ior=1.5, 
     white = Value((1.0, 1.0, 1.0))
     coat_ior = ior_of_reflectance(2.0 * specular * normal_reflectance(ior)) if specular != 0.5 else ior
     coat = dielectric_coat(tint or white, roughness, coat_ior)
-    # A smooth coat takes F of the body's light in the engine, a rough one, which is a highlight only, takes it here.
-    taken = (1.0 - sharpness(roughness)) * normal_reflectance(coat_ior)
-    lobes = Lobes(diffuse=base.times(1.0 - taken)).plus(coat).times((1.0 - m) * (1.0 - w))
+    lobes = Lobes(diffuse=base).plus(coat).times((1.0 - m) * (1.0 - w))
     if w > 0.0:
-        lobes = lobes.plus(Lobes(coat=white, glass=base.sqrt(), ior=ior).times((1.0 - m) * w))
-    return lobes.plus(metal(base, roughness).times(m)) if m > 0.0 else lobes
-
-
-def _report_rough(source, reader, transmission, roughness):
-    if transmission > 0.0 and roughness > 0.1:
-        reader.warn(f"node {source.node.name!r}: rough refraction is not rendered, it is drawn sharp")
+        lobes = lobes.plus(dielectric_body(white, base.sqrt(), roughness, ior).times((1.0 - m) * w))
+    edge = tint.average if tint else (1.0, 1.0, 1.0)
+    return lobes.plus(metal(base, roughness, edge).times(m)) if m > 0.0 else lobes
 
 
 def _diffuse(source, reader):
@@ -109,20 +111,30 @@ def _diffuse(source, reader):
 
 
 def _glossy(source, reader):
-    color = source.input("Color") or source.input("Base Color")
-    return metal(reader.color(color), reader.number(source.input("Roughness")))
+    return mirror(reader.color(source.input("Color")), reader.number(source.input("Roughness")))
+
+
+def _metallic(source, reader):
+    roughness = reader.number(source.input("Roughness"))
+    if source.node.fresnel_type != "F82":
+        index, extinction = (reader.color(source.input(name)).average for name in ("IOR", "Extinction"))
+        normal, near_edge = (conductor_reflectance(cosine, index, extinction) for cosine in (1.0, 1.0 / 7.0))
+        # Schlick's approximation there, of which F82's tint is the share.
+        return metal(Value(tuple(normal)), roughness, near_edge / (normal + (1.0 - normal) * (6.0 / 7.0) ** 5))
+    edge = reader.color(source.input("Edge Tint")).average
+    return metal(reader.color(source.input("Base Color")), roughness, edge)
 
 
 def _glass(source, reader):
-    _report_rough(source, reader, 1.0, reader.number(source.input("Roughness")))
     color = reader.color(source.input("Color"))
-    return Lobes(coat=color, glass=color, ior=max(reader.number(source.input("IOR")), 1e-3))
+    ior = max(reader.number(source.input("IOR")), 1e-3)
+    return dielectric_body(color, color, reader.number(source.input("Roughness")), ior)
 
 
 def _refraction(source, reader):
-    _report_rough(source, reader, 1.0, reader.number(source.input("Roughness")))
     ior = max(reader.number(source.input("IOR")), 1e-3)
-    return Lobes(clear=reader.color(source.input("Color")), clear_ior=ior)
+    rough = min(max(reader.number(source.input("Roughness")), 0.0), 1.0)
+    return Lobes(clear=reader.color(source.input("Color")), clear_ior=ior, transmit_roughness=rough)
 
 
 def _transparent(source, reader):
@@ -157,7 +169,7 @@ _NODES = {
     "BSDF_PRINCIPLED": _principled,
     "BSDF_DIFFUSE": _diffuse,
     "BSDF_GLOSSY": _glossy,
-    "BSDF_METALLIC": _glossy,
+    "BSDF_METALLIC": _metallic,
     "BSDF_GLASS": _glass,
     "BSDF_REFRACTION": _refraction,
     "BSDF_TRANSPARENT": _transparent,

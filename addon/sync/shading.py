@@ -120,6 +120,8 @@ def _shaded(material, reader):
         reader.warn(
             "its mix of an image or attribute with another or with a color is rendered as the stronger one, brightened"
         )
+    if lobes.one_roughness:
+        reader.warn("its reflections of different roughness are rendered with the roughness of the strongest")
     return lobes.material(_absorption(volume, reader))
 
 

@@ -1,0 +1,125 @@
+"""Rough surfaces in pictures: the energy that single scattering by GGX keeps, by quadrature; no noise at one sample."""
+
+import numpy as np
+import pytest
+
+from addon.engine import Camera, Light, Material, Scene, Settings, World, render
+from addon.engine.packing import pack
+
+from .probe import fresnel
+
+
+def seen_flat(device, material, cosine, world=1.0, lights=(), **settings):
+    """Pixels (12, 16, 3) of an infinite plane of a single sheet, seen under an angle of this cosine everywhere."""
+    eye = 5.0 * np.array([np.sqrt(1.0 - cosine**2), 0.0, cosine])
+    camera = Camera.orthographic_at(eye, (0.0, 0.0, 0.0), 1e-3, up=(0.0, 1.0, 0.0), aspect=4.0 / 3.0)
+    scene = Scene(camera=camera, world=World((world,) * 3), materials=[material], lights=list(lights))
+    scene.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0)
+    settings = Settings(**{"samples": 64, "max_depth": 3, "weight_cutoff": 0.0} | settings)
+    return render(scene, 16, 12, settings, device=device).pixels[..., :3].astype(np.float64)
+
+
+def facets(alpha):
+    """Normals (n, 3) and cosines such that a mean over them is an integral of D cos over the half sphere."""
+    below, angle = np.meshgrid((np.arange(3000) + 0.5) / 3000, (np.arange(256) + 0.5) / 256 * 2.0 * np.pi)
+    slope = alpha * np.sqrt(below / (1.0 - below))
+    z = 1.0 / np.sqrt(1.0 + slope**2)
+    return np.stack([slope * np.cos(angle) * z, slope * np.sin(angle) * z, z], axis=-1).reshape(-1, 3)
+
+
+def hidden(cosine, alpha):
+    """Smith's Lambda."""
+    tangent = np.sqrt(np.maximum(1.0 - cosine**2, 0.0)) / np.maximum(np.abs(cosine), 1e-9)
+    return (np.sqrt(1.0 + (alpha * tangent) ** 2) - 1.0) / 2.0
+
+
+def kept(cosine, roughness, n_from=None, n_to=None):
+    """(reflected, transmitted) share of light of a white surface, of a dielectric where there are indices."""
+    alpha = roughness**2
+    facet = facets(alpha)
+    view = np.array([np.sqrt(1.0 - cosine**2), 0.0, cosine])
+    cos_i = facet @ view
+    faces = cos_i > 0.0
+    mirrored = 2.0 * cos_i * facet[:, 2] - cosine
+    share = fresnel(np.clip(cos_i, 0.0, 1.0), n_from, n_to) if n_from else 1.0
+
+    def mean(cos_out, there, part):
+        both_seen = 1.0 / (1.0 + hidden(cosine, alpha) + hidden(cos_out, alpha))
+        return (part * both_seen * cos_i / (cosine * facet[:, 2]) * (there & faces)).mean()
+
+    reflected = mean(mirrored, mirrored > 0.0, share)
+    if not n_from:
+        return reflected, 0.0
+    eta = n_from / n_to
+    root = 1.0 - eta**2 * (1.0 - cos_i**2)
+    bent = -eta * cosine + (eta * cos_i - np.sqrt(np.maximum(root, 0.0))) * facet[:, 2]
+    return reflected, mean(bent, (root > 0.0) & (bent < 0.0), 1.0 - share)
+
+
+@pytest.mark.parametrize("roughness", [0.05, 0.3, 0.6, 1.0])
+@pytest.mark.parametrize("cosine", [0.15, 0.6, 1.0])
+def test_rough_mirror_in_a_furnace(device, roughness, cosine):
+    """No more than comes in, and what single scattering keeps."""
+    pixels = seen_flat(device, Material.mirror(roughness=roughness), cosine)
+    assert pixels.max() <= 1.0 + 1e-5
+    assert pixels.mean() == pytest.approx(kept(cosine, roughness)[0], abs=4e-3)
+
+
+@pytest.mark.parametrize("roughness", [0.1, 0.5, 1.0])
+@pytest.mark.parametrize("cosine", [0.2, 0.7, 1.0])
+def test_rough_glass_in_a_furnace(device, roughness, cosine):
+    glass = {"diffuse": 0.0, "reflect": 1.0, "transmit": 1.0, "ior": 1.5, "bounds_body": False}
+    rough = {"roughness": roughness, "transmit_roughness": roughness}
+    reflected, transmitted = kept(cosine, roughness, 1.0, 1.5)
+    pixels = seen_flat(device, Material(**glass, **rough), cosine)
+    assert pixels.max() <= 1.0 + 1e-5
+    assert pixels.mean() == pytest.approx(reflected + transmitted, abs=4e-3)
+    pixels = seen_flat(device, Material(**{**glass, "transmit": 0.0}, **rough), cosine)
+    assert pixels.mean() == pytest.approx(reflected, abs=2e-3), "the mirror alone"
+
+
+def test_metal_grows_to_white_and_is_tinted_near_82_degrees(device):
+    """Smooth, so that the cosine is known."""
+    metal = Material.metal((0.9, 0.6, 0.2), edge=(1.0, 0.5, 0.1))
+    assert seen_flat(device, metal, 1.0, samples=1)[0, 0] == pytest.approx((0.9, 0.6, 0.2), abs=1e-5)
+    schlick = np.array([0.9, 0.6, 0.2]) + (1.0 - np.array([0.9, 0.6, 0.2])) * (6.0 / 7.0) ** 5
+    assert seen_flat(device, metal, 1.0 / 7.0, samples=1)[0, 0] == pytest.approx(schlick * (1.0, 0.5, 0.1), abs=1e-4)
+    assert seen_flat(device, metal, 1e-3, samples=1)[0, 0] == pytest.approx((1.0, 1.0, 1.0), abs=2e-2)
+
+
+@pytest.mark.parametrize("roughness", [0.0, 0.2, 0.4, 0.7])
+@pytest.mark.parametrize("make", [Material.metal, Material.plastic])
+def test_one_sample_has_no_noise(device, make, roughness):
+    """All pixels of a plane are the same; in a furnace a mirror that is too rough for one ray fades."""
+    material = make((0.5, 0.5, 0.5), roughness=roughness)
+    lamp = Light.sun((0.3, 0.2, 1.0), 2.0)
+    assert np.ptp(seen_flat(device, material, 0.6, lights=[lamp], samples=1), axis=(0, 1)).max() < 1e-4
+    mirror = Material.mirror(roughness=roughness)
+    x = np.clip((0.5 - roughness) / 0.4, 0.0, 1.0)
+    assert seen_flat(device, mirror, 0.6, samples=1)[0, 0, 0] == pytest.approx(x * x * (3.0 - 2.0 * x), abs=1e-5)
+
+
+def test_highlight_of_a_sun_is_the_formula(device):
+    """pi D G F / 4 cos_view, in units of a white diffuse surface: a coat's and a metal's, at one sample and at many."""
+    cosine, alpha, towards = 0.6, 0.3**2, np.array([-0.5, 0.3, 0.8]) / np.linalg.norm([-0.5, 0.3, 0.8])
+    view = np.array([np.sqrt(1.0 - cosine**2), 0.0, cosine])
+    facet = (view + towards) / np.linalg.norm(view + towards)
+    density = alpha**2 / (np.pi * (facet[2] ** 2 * (alpha**2 - 1.0) + 1.0) ** 2)
+    shadowed = 1.0 + hidden(cosine, alpha) + hidden(towards[2], alpha)
+    share = density / (4.0 * cosine * shadowed) * 2.0
+    lamp = Light.sun(towards, 2.0)
+    coat = Material(diffuse=0.0, reflect=1.0, ior=1.5, roughness=0.3)
+    metal = Material.metal((0.9, 0.6, 0.2), roughness=0.3)
+    schlick = np.array([0.9, 0.6, 0.2]) + (1.0 - np.array([0.9, 0.6, 0.2])) * (1.0 - facet @ view) ** 5
+    for material, reflectance in ((coat, fresnel(facet @ view, 1.0, 1.5)), (metal, schlick)):
+        pixels = seen_flat(device, material, cosine, world=0.0, lights=[lamp], samples=2)
+        assert pixels[0, 0] == pytest.approx(share * reflectance * np.ones(3), rel=1e-3)
+
+
+def test_smooth_scenes_do_not_pay():
+    """Nor do their programs carry what rough ones need."""
+    scene = Scene(camera=Camera.look_at((0.0, -4.0, 0.0), (0.0, 0.0, 0.0)), materials=[Material.plastic(0.5)])
+    scene.add_spheres((0.0, 0.0, 0.0), 1.0)
+    assert not {"HAS_ROUGHNESS", "HAS_METALS"} & set(pack(scene, 4096).features)
+    scene.materials = [Material.metal(0.5, roughness=0.2)]
+    assert {"HAS_ROUGHNESS", "HAS_METALS"} <= set(pack(scene, 4096).features)
