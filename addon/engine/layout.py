@@ -232,6 +232,8 @@ MATERIAL = _record(
     ("roughness", "float", "of the mirror; its microfacets' alpha is the square"),
     ("edge", "vec3", "F82 tint: what is left of the mirror's share near 82 degrees"),
     ("transmit_roughness", "float", ""),
+    ("multiscatter", "float", "1: light that rough facets reflect to each other is given back"),
+    ("unused", "vec3", ""),
 )
 LIGHT = _record(
     "light",

@@ -44,7 +44,7 @@ class MaterialTable:
     def records(self, attributes):
         """Records of `layout.MATERIAL`; `attributes` is the plan's `AttributePlan`."""
         records = layout.MATERIAL.zeros(len(self.materials))
-        for name in records.dtype.names:
+        for name in (name for name in records.dtype.names if name != "unused"):
             values = [getattr(material, name) for material in self.materials]
             records[name] = list(map(attributes.number, values)) if name.endswith("_attribute") else values
         return records

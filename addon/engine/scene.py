@@ -36,7 +36,8 @@ class Material:
     Metals are without `fresnel`: their share grows from r to `grazing` at grazing incidence after Schlick, and `edge`
     tints it near 82 degrees (Hoffman 2023, Generating Real-Time Rendering's F82). `roughness` is that of Blender: of
     microfacets of the GGX distribution whose alpha is its square; with it the lights have highlights, and with more
-    than one sample the rays are spread.
+    than one sample the rays are spread. Rough facets lose what they reflect to each other; with `multiscatter` mirrors
+    and metals give it back.
     """
 
     diffuse: tuple = (0.8, 0.8, 0.8)
@@ -60,6 +61,7 @@ class Material:
     transmit_roughness: float = 0.0
     grazing: tuple = (0.0, 0.0, 0.0)
     edge: tuple = (1.0, 1.0, 1.0)
+    multiscatter: bool = False
     bounds_body: bool = True  # False: a single sheet, which bends light but is no border of a medium
     cull_back: bool = False  # rays that meet the back pass through, shadow rays only with the next
     cull_back_shadow: bool = False

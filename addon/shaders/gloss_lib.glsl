@@ -16,6 +16,20 @@ bool gloss_transmission_is_rough(Material material, float eta)
   return material.transmit_roughness > GLOSS_SMOOTH && abs(eta - 1.0) > 1e-3 && optics_largest(material.transmit) > 0.0;
 }
 
+/* Let the rough facets of a mirror or metal give back what they reflect to each other. */
+void gloss_give_back(inout Material material, float cosine)
+{
+  if (material.multiscatter > 0.5 && material.fresnel < 0.5 && gloss_mirror_is_rough(material)) {
+    vec3 mean = material.reflect;
+#ifdef HAS_METALS
+    mean = optics_metal_mean(material.reflect, material.grazing, material.edge);
+#endif
+    vec3 factor = microfacet_given_back(mean, cosine, material.roughness * material.roughness);
+    material.reflect *= factor;
+    material.grazing *= factor;
+  }
+}
+
 /* What is sent to `view` of the light that comes from `light`, which may lie on the other side of the surface, as a share of
  * what a white diffuse surface facing it returns. `eta` is the index before the surface over the one beyond. */
 vec3 gloss_lit(Material material, float eta, vec3 normal, vec3 view, vec3 light)
@@ -67,15 +81,15 @@ vec3 gloss_refracted(Material material, float eta, vec3 normal, vec3 incoming, v
   return bent;
 }
 
-/* Share of a mirror that one ray can stand for. */
-float gloss_sharpness(float roughness)
+/* What a rough mirror is drawn as where a pixel has one sample and shall have no noise: the rougher, the less of it as a
+ * sharp mirror. Of a metal some becomes diffuse in place of what it would mirror of other things than lamps; the rest is
+ * left to the lamps' highlights. */
+void gloss_draw_sharp(inout Material material, inout vec3 mirror, inout vec3 diffuse)
 {
-  return 1.0 - smoothstep(0.1, 0.5, roughness);
-}
-
-/* Share of the light of a rough metal that is drawn as diffuse where a pixel has one sample, in place of what it would mirror
- * of other things than lamps: the rougher the more. What is left is mirrored, sharp. */
-float gloss_blunt(Material material)
-{
-  return material.fresnel > 0.5 ? 0.0 : (1.0 - gloss_sharpness(material.roughness)) * material.roughness;
+  float sharp = 1.0 - smoothstep(0.1, 0.5, material.roughness);
+  float blunt = material.fresnel > 0.5 ? 0.0 : (1.0 - sharp) * material.roughness;
+  mirror *= sharp;
+  diffuse += blunt * material.reflect;
+  material.reflect *= 1.0 - blunt;
+  material.grazing *= 1.0 - blunt;
 }

@@ -71,6 +71,32 @@ float microfacet_refracted(vec3 normal, vec3 view, vec3 light, float alpha, floa
   return 0.5 * TWO_PI * microfacet_density(normal, facet, alpha) * jacobian / (max(cos_view, 1e-6) * shadowed);
 }
 
+/* Share of the light that facets which reflect all of it mirror into each other: fits to the integrals, the first within
+ * 0.035, 0.01 on the mean, the second, over all directions, within 0.002. */
+float microfacet_lost(float cosine, float alpha)
+{
+  float c = clamp(cosine, 1e-4, 1.0);
+  float a = alpha;
+  float above = c * a * a * (0.1971 + 0.1783 * a - 0.4466 * c + 6.6506 * c * a);
+  float below = c * c * c - 2.6826 * c * c * a + 3.1376 * c * a * a + 0.0899 * a * a * a + 8.0544 * c * c * a * a;
+  return clamp(above / below, 0.0, 0.9);
+}
+
+float microfacet_mean_lost(float alpha)
+{
+  return alpha * alpha * (3.5757 - 1.1751 * alpha) / (1.0 + 2.9102 * alpha + 0.1531 * alpha * alpha);
+}
+
+/* What multiplies the mirrored light to give back what is lost so, where facets reflect `reflectance` of it on the mean
+ * (Turquin 2019, Practical Multiple Scattering Compensation; its colour after Kulla and Conty 2017; as Cycles). */
+vec3 microfacet_given_back(vec3 reflectance, float cosine, float alpha)
+{
+  float lost = microfacet_lost(cosine, alpha);
+  float mean_lost = microfacet_mean_lost(alpha);
+  vec3 again = reflectance * (1.0 - mean_lost) / (1.0 - min(reflectance, 1.0) * mean_lost);
+  return 1.0 + again * (lost / (1.0 - lost));
+}
+
 /* Cosine at which a smooth surface has the reflectance that the facets have on the mean. A fit to the integral, for all
  * indices of refraction alike. */
 float microfacet_mean_cosine(float cosine, float alpha)

@@ -27,7 +27,14 @@ vec3 optics_metal(vec3 normal, vec3 grazing, vec3 edge, float cosine)
   float s = clamp(1.0 - cosine, 0.0, 1.0);
   float s5 = s * s * s * s * s;
   vec3 at_edge = normal + rise * 0.46266436; /* (6/7)^5 */
-  return max(normal + rise * s5 - at_edge * (1.0 - edge) * (17.651259 * cosine * s5 * s), 0.0); /* 7 (7/6)^6 */
+  return max(normal + rise * s5 - at_edge * (1.0 - edge) * (17.651385 * cosine * s5 * s), 0.0); /* 7 (7/6)^6 */
+}
+
+/* Its mean over the directions that a diffuse surface is lit from. */
+vec3 optics_metal_mean(vec3 normal, vec3 grazing, vec3 edge)
+{
+  vec3 rise = max(grazing - normal, 0.0);
+  return normal + rise / 21.0 - (normal + rise * 0.46266436) * (1.0 - edge) * (17.651385 / 126.0);
 }
 
 /* (48). */

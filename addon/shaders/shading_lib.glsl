@@ -342,6 +342,9 @@ Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout f
   radiance += path.weight * material.glow;
 
   float cos_i = min(-dot(normal, incoming), 1.0);
+#ifdef HAS_ROUGHNESS
+  gloss_give_back(material, cos_i);
+#endif
   float cos_t;
   float fresnel = optics_fresnel(cos_i, eta, cos_t);
   bool total = transmits && cos_t == 0.0;
@@ -362,14 +365,8 @@ Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout f
     float mean = microfacet_mean_cosine(cos_i, material.roughness * material.roughness);
     fresnel = optics_fresnel(mean, eta, cos_t);
   }
-  lit.material = material;
-  lit.material.reflect *= path.weight;
-  lit.material.grazing *= path.weight;
-  lit.material.transmit *= path.weight;
-  lit.eta = eta;
-  lit.beyond = beyond;
   if (frame_sample >= 0.0) {
-    /* The same facet for both where they are as rough: together they keep what comes in. Lights use numbers from 0 on. */
+    /* The same facet for both: together they keep what comes in where they are as rough. Lights take numbers from 0 on. */
     vec2 u = sampling_2d(sampling_pixel(gl_FragCoord.xy), int(frame_sample), -path.depth);
     if (gloss_mirror_is_rough(material)) {
       mirrored = gloss_mirrored(material, eta, normal, incoming, u, mirror);
@@ -379,12 +376,14 @@ Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout f
     }
   }
   else {
-    float blunt = gloss_blunt(material);
-    diffuse += blunt * material.reflect;
-    mirror *= gloss_sharpness(material.roughness);
-    lit.material.reflect *= 1.0 - blunt;
-    lit.material.grazing *= 1.0 - blunt;
+    gloss_draw_sharp(material, mirror, diffuse);
   }
+  lit.material = material;
+  lit.material.reflect *= path.weight;
+  lit.material.grazing *= path.weight;
+  lit.material.transmit *= culled ? vec3(0.0) : path.weight;
+  lit.eta = eta;
+  lit.beyond = beyond;
 #endif
   if (material.fresnel > 0.5) {
     diffuse *= 1.0 - fresnel * optics_largest(material.reflect);

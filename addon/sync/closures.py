@@ -53,6 +53,10 @@ def _report_ignored(source, reader):
         socket = source.node.inputs.get(name)
         if socket is not None and socket.enabled and (socket.is_linked or _is_set(socket)):
             used.append(socket.name)
+    roughness = source.node.inputs.get("Roughness")
+    rough = roughness is not None and (roughness.is_linked or roughness.default_value > 0.0)
+    if rough and getattr(source.node, "distribution", "GGX") in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
+        reader.warn(f"node {source.node.name!r}: its distribution is rendered as GGX")
     if used:
         reader.warn(f"node {source.node.name!r}: {listed(used, 'is', 'are')} not rendered")
 
@@ -74,6 +78,7 @@ def _principled(source, reader):
         ior=number("IOR"),
         specular=number("Specular IOR Level"),
         tint=reader.color(source.input("Specular Tint")),
+        multiscatter=_multiscatters(source),
     )
     coat = number("Coat Weight")
     if coat > 0.0:
@@ -86,7 +91,9 @@ def _principled(source, reader):
     return lobes if alpha >= 1.0 else Lobes(clear=Value((1.0, 1.0, 1.0))).mixed(lobes, max(alpha, 0.0))
 
 
-def principled(base, *, metallic=0.0, roughness=0.5, transmission=0.0, ior=1.5, specular=0.5, tint=None):
+def principled(
+    base, *, metallic=0.0, roughness=0.5, transmission=0.0, ior=1.5, specular=0.5, tint=None, multiscatter=False
+):
     """Blender's Principled BSDF: metal, glass and a dielectric over a diffuse body, by weight.
 
     As in Cycles, glass takes the root of the base colour at each of its surfaces, and the specular level changes the
@@ -101,7 +108,12 @@ def principled(base, *, metallic=0.0, roughness=0.5, transmission=0.0, ior=1.5, 
     if w > 0.0:
         lobes = lobes.plus(dielectric_body(white, base.sqrt(), roughness, ior).times((1.0 - m) * w))
     edge = tint.average if tint else (1.0, 1.0, 1.0)
-    return lobes.plus(metal(base, roughness, edge).times(m)) if m > 0.0 else lobes
+    return lobes.plus(metal(base, roughness, edge, multiscatter).times(m)) if m > 0.0 else lobes
+
+
+def _multiscatters(source):
+    """Whether a node's distribution is Multiscatter GGX; the others are all drawn as GGX."""
+    return source.node.distribution == "MULTI_GGX"
 
 
 def _diffuse(source, reader):
@@ -111,18 +123,20 @@ def _diffuse(source, reader):
 
 
 def _glossy(source, reader):
-    return mirror(reader.color(source.input("Color")), reader.number(source.input("Roughness")))
+    color, roughness = reader.color(source.input("Color")), reader.number(source.input("Roughness"))
+    return mirror(color, roughness, _multiscatters(source))
 
 
 def _metallic(source, reader):
-    roughness = reader.number(source.input("Roughness"))
+    roughness, multiscatter = reader.number(source.input("Roughness")), _multiscatters(source)
     if source.node.fresnel_type != "F82":
         index, extinction = (reader.color(source.input(name)).average for name in ("IOR", "Extinction"))
         normal, near_edge = (conductor_reflectance(cosine, index, extinction) for cosine in (1.0, 1.0 / 7.0))
         # Schlick's approximation there, of which F82's tint is the share.
-        return metal(Value(tuple(normal)), roughness, near_edge / (normal + (1.0 - normal) * (6.0 / 7.0) ** 5))
+        edge = near_edge / (normal + (1.0 - normal) * (6.0 / 7.0) ** 5)
+        return metal(Value(tuple(normal)), roughness, edge, multiscatter)
     edge = reader.color(source.input("Edge Tint")).average
-    return metal(reader.color(source.input("Base Color")), roughness, edge)
+    return metal(reader.color(source.input("Base Color")), roughness, edge, multiscatter)
 
 
 def _glass(source, reader):

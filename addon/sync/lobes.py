@@ -29,7 +29,7 @@ class Lobes:
     dielectric of index `ior`, times Fresnel F and 1 - F. `metal` is reflected at normal incidence and grows to
     `grazing`, `edge` its F82 tint. `clear_ior` bends what goes through as `clear`: 1 for Transparent. `roughness` is
     that of all that is reflected, `transmit_roughness` of what goes through; `one_roughness` says that they replace
-    others.
+    others. `multiscatter`: what facets lose to each other is given back.
     """
 
     diffuse: Value = field(default_factory=Value)
@@ -47,6 +47,7 @@ class Lobes:
     edge: tuple = (1.0, 1.0, 1.0)
     roughness: float = 0.0
     transmit_roughness: float = 0.0
+    multiscatter: bool = False
     one_roughness: bool = False
 
     def plus(self, other):
@@ -66,6 +67,7 @@ class Lobes:
             **shares,
             edge=_of_stronger(self, other, "edge", "metal"),
             roughness=self.roughness if self.reflectance > 0.0 else other.roughness,
+            multiscatter=self.multiscatter if self.reflectance > 0.0 else other.multiscatter,
             transmit_roughness=_of_stronger(self, other, "transmit_roughness", "clear", "glass"),
             one_roughness=self.one_roughness or other.one_roughness or _differ_in_roughness(self, other),
             shine=_of_stronger(self, other, "shine", "highlight"),
@@ -151,10 +153,11 @@ class Lobes:
             transmit_roughness=self.transmit_roughness if transmit.weight > 0.0 else 0.0,
             grazing=tuple(grazing),
             edge=self.edge,
+            multiscatter=self.multiscatter and not fresnel,
         )
 
 
-_NUMBERS = ("shine", "ior", "clear_ior", "edge", "roughness", "transmit_roughness", "one_roughness")
+_NUMBERS = ("shine", "ior", "clear_ior", "edge", "roughness", "transmit_roughness", "multiscatter", "one_roughness")
 
 
 def _differ_in_roughness(a, b):
@@ -226,16 +229,17 @@ def phong_of(roughness):
     return (blinn + 2.0) / 8.0, max(blinn / 4.0, 1.0)
 
 
-def metal(color, roughness, edge=(1.0, 1.0, 1.0)):
+def metal(color, roughness, edge=(1.0, 1.0, 1.0), multiscatter=False):
     """A conductor that reflects `color` (a Value) at normal incidence, more at grazing incidence, `edge` of that near
     82 degrees."""
     edge = tuple(np.clip(edge, 0.0, 1.0).tolist())
-    return Lobes(metal=color, grazing=Value((1.0, 1.0, 1.0)), edge=edge, roughness=_unit(roughness))
+    white = Value((1.0, 1.0, 1.0))
+    return Lobes(metal=color, grazing=white, edge=edge, roughness=_unit(roughness), multiscatter=multiscatter)
 
 
-def mirror(color, roughness):
+def mirror(color, roughness, multiscatter=False):
     """A surface that reflects the same share at all angles."""
-    return Lobes(mirror=color, roughness=_unit(roughness))
+    return Lobes(mirror=color, roughness=_unit(roughness), multiscatter=multiscatter)
 
 
 def dielectric_coat(tint, roughness, ior):

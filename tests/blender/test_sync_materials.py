@@ -116,6 +116,30 @@ def test_rough_and_smooth_together_keep_the_highlight():
     assert read.shine == pytest.approx(7.5) and not synced.messages
 
 
+def test_multiscatter_is_of_metals():
+    for node_type, distribution, expected in (
+        ("BsdfAnisotropic", "MULTI_GGX", True),
+        ("BsdfAnisotropic", "GGX", False),
+        ("BsdfGlass", "MULTI_GGX", False),
+    ):
+        read, synced = shaded(
+            lambda tree, output, kind=node_type, name=distribution: setattr(
+                node(tree, kind, output.inputs["Surface"], Roughness=0.5), "distribution", name
+            )
+        )
+        assert read.multiscatter is expected and not synced.messages
+        bpy.data.objects.remove(bpy.data.objects["quad"])
+
+
+def test_another_distribution_is_reported():
+    _, synced = shaded(
+        lambda tree, output: setattr(
+            node(tree, "BsdfAnisotropic", output.inputs["Surface"]), "distribution", "BECKMANN"
+        )
+    )
+    assert len(synced.warnings("distribution", "GGX")) == 1 == len(synced.messages)
+
+
 def test_parts_of_different_roughness_are_reported():
     _, synced = shaded(
         lambda tree, output: node(
@@ -311,7 +335,8 @@ def test_rough_glass_is_rough_on_both_ways():
 
 
 def test_rough_refraction():
-    read = of_node("BsdfRefraction", Roughness=0.3)
+    read, synced = shaded(lambda tree, output: node(tree, "BsdfRefraction", output.inputs["Surface"], Roughness=0.3))
+    assert len(synced.warnings("distribution")) == 1 == len(synced.messages), "Beckmann's, which the node begins with"
     assert read.transmit_roughness == pytest.approx(0.3) and read.roughness == 0.0
 
 

@@ -65,6 +65,21 @@ def test_rough_mirror_in_a_furnace(device, roughness, cosine):
     assert pixels.mean() == pytest.approx(kept(cosine, roughness)[0], abs=4e-3)
 
 
+@pytest.mark.parametrize("roughness", [0.3, 0.6, 1.0])
+@pytest.mark.parametrize("cosine", [0.3, 0.6, 1.0])
+def test_multiscatter_mirror_gives_back_all(device, roughness, cosine):
+    """A white one all, by the fit of what is lost; a colored one less than that."""
+    white, red = (
+        Material(diffuse=0.0, reflect=color, roughness=roughness, fresnel=False, multiscatter=True)
+        for color in (1.0, (0.8, 0.2, 0.0))
+    )
+    assert seen_flat(device, white, cosine).mean() == pytest.approx(1.0, abs=0.05)
+    once = kept(cosine, roughness)[0]
+    r, g, b = seen_flat(device, red, cosine).mean(axis=(0, 1))
+    assert 0.8 * once - 4e-3 < r < 0.8 and 0.2 * once - 4e-3 < g < 0.2 and b == 0.0
+    assert r / g > 3.99, "each bounce makes it more saturated"
+
+
 @pytest.mark.parametrize("roughness", [0.1, 0.5, 1.0])
 @pytest.mark.parametrize("cosine", [0.2, 0.7, 1.0])
 def test_rough_glass_in_a_furnace(device, roughness, cosine):

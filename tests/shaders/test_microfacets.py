@@ -134,6 +134,24 @@ def test_mean_reflectance_of_facets(device, index):
             assert dielectric(float(mean[0, 0]), index) == pytest.approx(exact, rel=0.05), (alpha, cosine)
 
 
+def test_light_lost_between_facets(device):
+    """The fits against the mean weight of sampled directions, and its mean over the half sphere."""
+    u = (np.arange(N) + 0.5) / N, np.mod(np.arange(N) * 0.6180339887498949, 1.0)
+    errors = []
+    for alpha in np.array([0.1, 0.3, 0.5, 0.6, 0.8, 1.0]) ** 2:
+        exact, cosines = [], (np.arange(16) + 0.5) / 16
+        for cosine in cosines:
+            sampled, _, fits = facets(device, alpha, cosine, 0.0, u)
+            facet = sampled[:, :3].astype(np.float64)
+            out = 2.0 * (facet @ [np.sqrt(1.0 - cosine**2), 0.0, cosine]) * facet[:, 2] - cosine
+            first = seen(cosine, alpha)
+            weight = np.where(out > 0.0, first / (first + seen(np.maximum(out, 1e-9), alpha) - 1.0), 0.0)
+            exact.append(1.0 - weight.mean())
+            errors.append(fits[0, 2] - exact[-1])
+        assert fits[0, 3] == pytest.approx(2.0 * np.mean(exact * cosines), abs=4e-3), alpha
+    assert np.abs(errors).max() < 0.035 and np.sqrt(np.mean(np.square(errors))) < 0.012
+
+
 def dielectric(cosine, index):
     """Unpolarised reflectance from outside."""
     inside = np.sqrt(index**2 - 1.0 + np.square(cosine))

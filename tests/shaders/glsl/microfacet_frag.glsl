@@ -21,5 +21,6 @@ void main()
   vec3 y = sampling_around(normal, vec3(0.0, 1.0, 0.0));
   out_facet = vec4(dot(x, facet), dot(y, facet), dot(normal, facet), microfacet_density(normal, facet, alpha));
   out_light = vec4(mirrored, refracted, microfacet_weight(value.a.y, value.b.w, alpha), dot(across, view));
-  out_mean = vec4(microfacet_mean_cosine(value.a.y, alpha), microfacet_density(normal, light, alpha), 0.0, 0.0);
+  out_mean = vec4(microfacet_mean_cosine(value.a.y, alpha), microfacet_density(normal, light, alpha),
+                  microfacet_lost(value.a.y, alpha), microfacet_mean_lost(alpha));
 }
