@@ -43,7 +43,8 @@ class ConicSceneSettings(bpy.types.PropertyGroup):
     samples: IntProperty(
         name="Render",
         description="Rays through each pixel in the final render. One goes through its center and takes the middle "
-        "of each light, which gives sharp shadows without noise; more make the shadows of large lights soft",
+        "of each light, which gives sharp shadows without noise; more make the shadows of large lights soft and "
+        "blur what rough surfaces reflect and refract",
         default=16,
         min=1,
         soft_max=256,
