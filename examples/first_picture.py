@@ -19,7 +19,7 @@ from mathutils import Euler, Matrix, Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from examples.in_blender import arguments_given, empty_blender, finish, parser_of
+from examples.in_blender import arguments_given, empty_blender, finish, new_light, parser_of
 from examples.molecule import (
     PACKAGE,
     VAN_DER_WAALS_RADIUS,
@@ -77,7 +77,7 @@ def build_scene(atoms):
     add_drug(stage, atoms.where(atoms.residue == DRUG))
     add_still_life(stage)
     for light in LIGHTS:
-        add_light(stage, *light)
+        stage.collection.objects.link(new_light(*light))
     scene = bpy.context.scene
     scene.world = add_world()
     scene.camera = add_camera(stage, (0.3, -13.5, 4.2), (0.0, 0.0, 1.45))
@@ -214,20 +214,6 @@ def new_image(name, pixels, is_float):
     image.update()
     image.pack()
     return image
-
-
-def add_light(stage, kind, location, energy, color):
-    light = bpy.data.lights.new(kind.title(), kind)
-    light.energy, light.color = energy, linear(color)
-    if kind == "SUN":
-        light.angle = 0.0
-    else:
-        light.shadow_soft_size = 0.0
-    lamp = bpy.data.objects.new(light.name, light)
-    lamp.location = location
-    lamp.rotation_mode = "QUATERNION"
-    lamp.rotation_quaternion = (-Vector(location)).to_track_quat("-Z", "Y")
-    stage.collection.objects.link(lamp)
 
 
 def add_world():

@@ -7,6 +7,9 @@ import sys
 from pathlib import Path
 
 import bpy
+from mathutils import Vector
+
+from examples.painted_images import linear
 
 
 def register_conic():
@@ -46,6 +49,21 @@ def empty_blender():
     """Conic registered, and no scene but an empty one."""
     register_conic()
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+
+def new_light(kind, location, energy, color):
+    """A lamp without extent, in no scene yet, that looks at the origin. `color`: six hexadecimal digits."""
+    light = bpy.data.lights.new(kind.title(), kind)
+    light.energy, light.color = energy, linear(color)
+    if kind == "SUN":
+        light.angle = 0.0
+    else:
+        light.shadow_soft_size = 0.0
+    lamp = bpy.data.objects.new(light.name, light)
+    lamp.location = location
+    lamp.rotation_mode = "QUATERNION"
+    lamp.rotation_quaternion = (-Vector(location)).to_track_quat("-Z", "Y")
+    return lamp
 
 
 def finish(scene, options):

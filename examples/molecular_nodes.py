@@ -20,7 +20,7 @@ from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from examples.in_blender import arguments_given, empty_blender, finish, parser_of
+from examples.in_blender import arguments_given, empty_blender, finish, new_light, parser_of
 from examples.painted_images import linear
 
 #: The slice of water that is cut out, in angstroms: where its edge is on the y axis, how much x grows to its left and
@@ -71,7 +71,7 @@ def build_scene(molecularnodes, files):
     add_molecule(molecularnodes, read_cell(files))
     add_floor(molecularnodes)
     for light in LIGHTS:
-        add_light(*light)
+        bpy.context.scene.collection.objects.link(new_light(*light))
     scene.world = add_world()
     scene.camera = add_camera((3.6, -26.0, 12.0), (3.6, 0.0, 3.9))
     scene.render.image_settings.file_format = "PNG"
@@ -178,19 +178,6 @@ def add_floor(molecularnodes):
     bsdf.inputs["Base Color"].default_value = (*linear("343e49"), 1.0)
     bsdf.inputs["Roughness"].default_value = 0.05
     floor.data.materials.append(material)
-
-
-def add_light(kind, location, energy, color):
-    light = bpy.data.lights.new(kind.title(), kind)
-    light.energy, light.color = energy, linear(color)
-    if kind == "SUN":
-        light.angle = 0.0
-    else:
-        light.shadow_soft_size = 0.0
-    lamp = bpy.data.objects.new(light.name, light)
-    lamp.location = location
-    lamp.rotation_euler = (-Vector(location)).to_track_quat("-Z", "Y").to_euler()
-    bpy.context.scene.collection.objects.link(lamp)
 
 
 def add_world():
