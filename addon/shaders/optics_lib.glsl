@@ -5,6 +5,11 @@ float optics_largest(vec3 color)
   return max(color.r, max(color.g, color.b));
 }
 
+float optics_mean(vec3 color)
+{
+  return (color.r + color.g + color.b) / 3.0;
+}
+
 /* Exact reflectance of unpolarised light at a smooth dielectric. `cos_i` >= 0, `eta` = n_from / n_to; `cos_t` is the
  * refracted ray's, and the reflectance is 1 at total internal reflection. (Born and Wolf 1.5.2.) */
 float optics_fresnel(float cos_i, float eta, out float cos_t)

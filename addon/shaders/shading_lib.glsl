@@ -1,23 +1,6 @@
-/* What happens where a ray meets a surface: paper 2.4, step 2. Light that is given off, the lights' shadow rays, and the two
- * rays that go on from there. */
-#include "bvh_lib.glsl"
-#include "material_lib.glsl"
-#include "medium_lib.glsl"
-#include "optics_lib.glsl"
-#include "light_lib.glsl"
-#ifdef HAS_ROUGHNESS
-#include "gloss_lib.glsl"
-#endif
-
-#ifdef TINTED_SHADOWS
-#define SHADING_SHADOWS_PASS true
-#else
-#ifdef CULLED_SHADOWS
-#define SHADING_SHADOWS_PASS true
-#else
-#define SHADING_SHADOWS_PASS false /* the first thing in the way ends a shadow ray */
-#endif
-#endif
+/* What happens where a ray meets a surface: paper 2.4, step 2. Light that is given off, and the two rays that go on from
+ * there. */
+#include "shadow_lib.glsl"
 
 /* A ray of the path and what it stands for. A camera ray has met nothing but surfaces that do not bend it. */
 struct Path {
@@ -39,36 +22,6 @@ Path shading_path(Ray ray, float t_max, vec3 weight, int depth, ivec4 media)
   return path;
 }
 
-/* A surface being lit. */
-struct Lit {
-  Surface surface;
-  vec3 normal; /* shading normal on the side of the path ray */
-  vec3 view;   /* direction of the path ray */
-  vec3 diffuse;
-  vec3 highlight;
-  float shine;
-  ivec4 media; /* around the lit side */
-  int shadow;  /* kind of the shadow rays */
-#ifdef HAS_LIGHT_SHAPES
-  int depth; /* of the path ray */
-#endif
-#ifdef HAS_ROUGHNESS
-  Material material; /* with shares of the pixel */
-  float eta;         /* index on the lit side over the one beyond */
-  ivec4 beyond;      /* media around the other side */
-#endif
-};
-
-/* A ray towards a light. */
-struct Shadow {
-  Ray ray;
-  float t_max;
-  vec3 contribution; /* to the pixel where nothing is in the way */
-  vec3 tint;         /* what the surfaces and bodies that it has passed leave of it */
-  ivec4 media;
-  int surfaces; /* passed so far */
-};
-
 /* The rays that go on from a surface, each of them if its `..s` holds. */
 struct Scattered {
   bool reflects;
@@ -79,11 +32,6 @@ struct Scattered {
   bool catches; /* nothing goes on: the sky is seen, as dark as the shadows of others make the surface */
 #endif
 };
-
-float shading_mean(vec3 color)
-{
-  return (color.r + color.g + color.b) / 3.0;
-}
 
 /* Nothing goes on; `path` stands for rays that are not there. */
 Scattered shading_nothing(Path path)
@@ -99,154 +47,6 @@ Scattered shading_nothing(Path path)
   return scattered;
 }
 
-/* Whether light that comes from the other side of a lit surface is to be seen. */
-bool shading_lit_through(Lit lit)
-{
-#ifdef HAS_ROUGHNESS
-  return gloss_transmission_is_rough(lit.material, lit.eta);
-#else
-  return false;
-#endif
-}
-
-/* Whether lights add anything. */
-bool shading_is_lit(Lit lit)
-{
-#ifdef HAS_ROUGHNESS
-  if (gloss_mirror_is_rough(lit.material) || shading_lit_through(lit)) {
-    return true;
-  }
-#endif
-  return optics_largest(lit.diffuse) > 0.0 || optics_largest(lit.highlight) > 0.0;
-}
-
-/* What the light that reaches a lit surface from `direction` adds to the pixel; `cosine` is its to the surface's normal. */
-vec3 shading_lit_by(Lit lit, vec3 radiance, vec3 direction, float cosine)
-{
-  vec3 share = lit.diffuse * max(cosine, 0.0);
-#ifdef HAS_ROUGHNESS
-  share += gloss_lit(lit.material, lit.eta, lit.normal, -lit.view, direction);
-  if (cosine <= 0.0) {
-    return radiance * share;
-  }
-#endif
-  float alignment = max(dot(optics_mirror(lit.view, lit.normal), direction), 0.0);
-  if (optics_largest(lit.highlight) > 0.0 && alignment > 0.0) {
-    share += lit.highlight * pow(alignment, lit.shine);
-  }
-  return radiance * share;
-}
-
-/* Where a shadow ray starts. A light that stands behind the flat triangle but before the smooth surface it stands for is
- * looked at from the latter: the triangle itself would be in the way. */
-vec3 shading_shadow_origin(Lit lit, vec3 direction)
-{
-  vec3 origin = ray_spawn(lit.surface, direction);
-#ifdef HAS_TRIANGLE
-  vec3 normal = lit.surface.geometric_normal;
-  float side = dot(lit.normal, normal);
-  if (dot(lit.normal, direction) > 0.0 && side * dot(direction, normal) < 0.0 && side * dot(lit.surface.lift, normal) > 0.0) {
-    origin += lit.surface.lift;
-  }
-#endif
-  return origin;
-}
-
-/* The shadow ray of the next light from `index` on that faces the surface and casts shadows; `index` becomes the number of
- * lights when there is none. Lights without shadows are added to `radiance` at once. */
-Shadow shading_next_shadow(inout int index, Lit lit, inout vec3 radiance)
-{
-  int count = int(frame_light_count);
-  Shadow shadow;
-  shadow.ray = ray_make(vec3(0.0), vec3(0.0, 0.0, 1.0), lit.shadow);
-  shadow.t_max = 0.0;
-  shadow.contribution = vec3(0.0);
-  shadow.tint = vec3(0.0);
-  shadow.media = lit.media;
-  shadow.surfaces = 0;
-  for (; index < count; index++) {
-    Light light = read_light(index);
-    vec3 direction;
-    float t_max;
-#ifdef HAS_LIGHT_SHAPES
-    bool sampled = frame_sample >= 0.0;
-    vec2 u = vec2(0.0);
-    if (sampled) {
-      u = sampling_2d(sampling_pixel(gl_FragCoord.xy), int(frame_sample), lit.depth * count + index);
-    }
-    vec3 arriving = light_shaped_at(light, index, lit.surface.position, sampled, u, direction, t_max);
-    if (optics_largest(arriving) <= 0.0) {
-      continue;
-    }
-#else
-    vec3 arriving = light_at(light, lit.surface.position, direction, t_max);
-#endif
-    float cosine = dot(lit.normal, direction);
-    if (cosine <= 0.0 && !shading_lit_through(lit)) {
-      continue;
-    }
-    vec3 contribution = shading_lit_by(lit, arriving, direction, cosine);
-    if (light.shadow < 0.5) {
-      radiance += contribution;
-      continue;
-    }
-    Ray ray = ray_make(shading_shadow_origin(lit, direction), direction, lit.shadow);
-    if (light.kind != LIGHT_SUN) { /* from where the ray starts, not from the surface */
-      vec3 to_light = light.position - ray.origin;
-      t_max = length(to_light);
-      ray.direction = to_light / max(t_max, 1e-30);
-    }
-    shadow.ray = ray;
-    shadow.t_max = t_max;
-#ifdef HAS_ROUGHNESS
-    shadow.media = cosine > 0.0 ? lit.media : lit.beyond;
-#endif
-    shadow.contribution = contribution;
-    shadow.tint = vec3(1.0);
-    break;
-  }
-  return shadow;
-}
-
-/* What a shadow ray brings when nothing more stands before the light. */
-vec3 shading_arrived(Shadow shadow)
-{
-  vec3 light = shadow.contribution * shadow.tint;
-#ifdef HAS_ABSORPTION
-  light *= optics_absorb(medium_absorption(shadow.media), shadow.t_max);
-#endif
-  return light;
-}
-
-/* Take a shadow ray through the surface that it has hit; false when it ends there or what is left is not worth following. */
-bool shading_pass(inout Shadow shadow, Hit hit)
-{
-  Surface surface = bvh_surface(hit, shadow.ray);
-  Material material = material_at(surface);
-  bool leaves = dot(shadow.ray.direction, surface.geometric_normal) > 0.0;
-  bool culled = false;
-#ifdef CULLED_SHADOWS
-  culled = !leaves && material.cull_back_shadow > 0.5; /* as the light sees it, which looks the other way */
-#endif
-#ifdef TINTED_SHADOWS
-  vec3 transmit = material.transmit;
-#else
-  vec3 transmit = vec3(0.0);
-#endif
-  shadow.tint *= culled ? vec3(1.0) : transmit;
-#ifdef HAS_ABSORPTION
-  bool borders = material.bounds_body > 0.5 && !culled;
-  shadow.tint *= optics_absorb(borders && leaves ? material.absorption : medium_absorption(shadow.media), hit.t);
-  if (borders) {
-    shadow.media = leaves ? medium_leave(shadow.media, surface.material) : medium_enter(shadow.media, surface.material);
-  }
-#endif
-  shadow.ray.origin = ray_spawn(surface, shadow.ray.direction);
-  shadow.t_max -= hit.t;
-  shadow.surfaces++;
-  return optics_largest(shadow.tint) > frame_weight_cutoff && shadow.surfaces <= TINTED_SHADOW_SURFACES;
-}
-
 /* What a shadow catcher leaves of the sky behind it: the light on it over the light there would be if nothing but catchers
  * cast shadows, whose own are in the footage already; the mean of the channels, 1 in those without light. It hides what
  * else is behind it, as the ground in the footage does. (As Cycles.) */
@@ -254,7 +54,7 @@ float shading_caught(vec3 lit, vec3 unshadowed)
 {
   vec3 ratio = vec3(unshadowed.r > 0.0 ? lit.r / unshadowed.r : 1.0, unshadowed.g > 0.0 ? lit.g / unshadowed.g : 1.0,
                     unshadowed.b > 0.0 ? lit.b / unshadowed.b : 1.0);
-  return min(shading_mean(ratio), 1.0);
+  return min(optics_mean(ratio), 1.0);
 }
 
 /* The reflected ray. An interpolated normal may bend it into the surface: then it grazes. */
@@ -329,7 +129,7 @@ Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout f
   if (path.ray.kind == RAY_CAMERA && !culled && (bvh_visibility(hit) & VISIBILITY_HOLDOUT) != 0) {
     material_hide(material);
     material.transmit *= eta == 1.0 ? 1.0 : 0.0;
-    alpha -= shading_mean(path.weight * (1.0 - material.transmit));
+    alpha -= optics_mean(path.weight * (1.0 - material.transmit));
   }
 #endif
 #ifdef HAS_SHADOW_CATCHER

@@ -46,16 +46,16 @@ void main()
       ray = shadow.ray;
       limit = shadow.t_max;
     }
-    Hit hit = bvh_traverse(ray, limit, is_shadow && !SHADING_SHADOWS_PASS);
+    Hit hit = bvh_traverse(ray, limit, is_shadow && !SHADOWS_PASS);
     bool missed = hit.kind < 0;
     bool sees_sky = missed && !is_shadow;
     bool path_ends = sees_sky;
 
     if (is_shadow) {
       if (missed) {
-        radiance += shading_arrived(shadow);
+        radiance += shadow_arrived(shadow);
       }
-      else if (SHADING_SHADOWS_PASS && shading_pass(shadow, hit)) {
+      else if (SHADOWS_PASS && shadow_pass(shadow, hit)) {
         continue;
       }
       light++;
@@ -71,18 +71,18 @@ void main()
         radiance = vec3(0.0);
       }
 #endif
-      light = shading_is_lit(lit) ? 0 : int(frame_light_count);
+      light = lit_is(lit) ? 0 : int(frame_light_count);
     }
 
     if (light >= 0) {
-      shadow = shading_next_shadow(light, lit, radiance);
+      shadow = shadow_next(light, lit, radiance);
 #ifdef HAS_SHADOW_CATCHER
       if (scattered.catches && light == int(frame_light_count) && lit.shadow == RAY_SHADOW) {
         caught = radiance; /* now the same lights with the shadows of catchers alone */
         radiance = vec3(0.0);
         lit.shadow = RAY_SHADOW_OF_CATCHERS;
         light = 0;
-        shadow = shading_next_shadow(light, lit, radiance);
+        shadow = shadow_next(light, lit, radiance);
       }
 #endif
       if (light < int(frame_light_count)) {
@@ -117,7 +117,7 @@ void main()
     }
     if (sees_sky) {
       if (frame_film_transparent > 0.5 && path.ray.kind == RAY_CAMERA) {
-        alpha -= shading_mean(path.weight);
+        alpha -= optics_mean(path.weight);
       }
       else {
         radiance += path.weight * world_radiance(path.ray.direction);
