@@ -6,13 +6,25 @@ nor the viewport.
 """
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
+from .film_properties import FilmProperties
 from .property_update import tag_update
 
 SHADOWS = (
     ("OPAQUE", "Opaque", "Whatever lies between a surface and a light blocks it, glass too"),
     ("TINTED", "Tinted", "Light passes straight through transparent bodies and takes on their color"),
+)
+
+WORLD_LIGHTS = (
+    (
+        "SAMPLED",
+        "Sampled",
+        "Each sample sends a ray towards the world, mostly to where it is bright. A picture of one sample has the "
+        "light of Hemisphere",
+    ),
+    ("HEMISPHERE", "Hemisphere", "A smooth light from all sides without noise or shadows"),
+    ("NONE", "None", "The world is seen but lights nothing"),
 )
 
 RECOGNISE = (
@@ -37,7 +49,7 @@ CURVE_SAMPLING = (
 )
 
 
-class ConicSceneSettings(bpy.types.PropertyGroup):
+class ConicSceneSettings(FilmProperties, bpy.types.PropertyGroup):
     """`scene.conic`"""
 
     samples: IntProperty(
@@ -85,6 +97,37 @@ class ConicSceneSettings(bpy.types.PropertyGroup):
         description="What transparent bodies do to the light that falls through them",
         items=SHADOWS,
         default="TINTED",
+        update=tag_update,
+    )
+    world_light: EnumProperty(
+        name="World",
+        description="How the world lights surfaces that are not mirrors",
+        items=WORLD_LIGHTS,
+        default="SAMPLED",
+        update=tag_update,
+    )
+    use_ao: BoolProperty(
+        name="Ambient Occlusion",
+        description="Darken corners and hollows: what is near hides a part of the Hemisphere light",
+        default=False,
+        update=tag_update,
+    )
+    ao_distance: FloatProperty(
+        name="Distance",
+        description="What is farther away hides nothing. 0 sets no limit",
+        default=1.0,
+        min=0.0,
+        soft_max=100.0,
+        subtype="DISTANCE",
+        update=tag_update,
+    )
+    ao_factor: FloatProperty(
+        name="Factor",
+        description="How much of the Hemisphere light can be hidden",
+        default=1.0,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
         update=tag_update,
     )
     recognise: EnumProperty(

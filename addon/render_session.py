@@ -4,6 +4,7 @@
 import os
 import time
 import traceback
+from dataclasses import replace
 
 import bpy
 import gpu
@@ -19,6 +20,7 @@ from .sync.scene_sync import SyncStatistics, sync_scene, sync_settings
 
 STEP_SECONDS = 0.05 if bpy.app.background else 0.04  # between two looks at whether the user wants out
 RESULT_SECONDS = 0.5  # between two showings of what is there so far
+PREVIEW_SAMPLES = 32  # of a small picture: the area lights of its scene are large
 _MEBIBYTE = 1024.0**2
 
 
@@ -82,6 +84,12 @@ def border_of(engine, render):
     return (*low.tolist(), *(high - low).tolist())
 
 
+def settings_of(engine, scene):
+    """The engine Settings of a render; `scene` is evaluated. The scenes of previews are Blender's and have defaults."""
+    settings = sync_settings(scene)
+    return replace(settings, samples=PREVIEW_SAMPLES) if engine.is_preview else settings
+
+
 def render_layer(engine, depsgraph):
     """Render the view layer of `depsgraph` for a bpy.types.RenderEngine.
 
@@ -119,7 +127,7 @@ class LayerRender:
         self.report = Reporter(engine)
         self.size = engine.resolution_x, engine.resolution_y
         self.border = border_of(engine, depsgraph.scene_eval.render)
-        self.settings = sync_settings(depsgraph.scene_eval, engine.is_preview)
+        self.settings = settings_of(engine, depsgraph.scene_eval)
         self.views = [view.name for view in engine.get_result().views]
         self.statistics = Statistics("Render", samples=self.settings.samples)
         self.shapes = ""

@@ -130,7 +130,8 @@ class ViewportSession:
 
     def start(self, size, pixel_size, camera):
         """Begin a picture whose pixels are squares of `pixel_size` in a region of `size`."""
-        self.session.start(*(max(1, round(length / pixel_size)) for length in size), camera=camera)
+        pixels = (max(1, round(length / pixel_size)) for length in size)
+        self.session.start(*pixels, camera=camera, pixel_size=pixel_size)
 
     def publish(self):
         """The first picture of what is loaded is there: show what it is made of and what it cost."""

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from mathutils import Euler, Matrix, Vector
+from mathutils import Euler
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
@@ -31,6 +31,7 @@ from examples.molecule import (
     read_pdb,
 )
 from examples.painted_images import globe, linear, studio
+from examples.stage import Stage, add_camera, new_image
 
 DRUG = "478"  # the residue's name in the file
 NANOMETRE = 0.1  # per angstrom
@@ -89,48 +90,9 @@ def build_scene(atoms):
     return scene
 
 
-class Stage:
-    """The meshes that the objects share, of unit size about the origin, and ways to place objects that have them."""
-
-    def __init__(self):
-        self.collection = bpy.context.scene.collection
-        self.ball = new_mesh("uv_sphere", segments=32, ring_count=16)
-        self.rod = new_mesh("cylinder", vertices=32, end_fill_type="NOTHING")
-        self.drum = new_mesh("cylinder", vertices=32)
-        self.cone = new_mesh("cone", vertices=32)
-        self.disc = new_mesh("circle", vertices=32, fill_type="NGON")
-        self.square = new_mesh("plane")
-
-    def place(self, name, mesh, material, location, scale, rotation=None):
-        """Add an object with a material of its own; `rotation` is a mathutils Euler or Quaternion."""
-        thing = bpy.data.objects.new(name, mesh)
-        thing.matrix_basis = Matrix.LocRotScale(Vector(location), rotation, Vector(np.broadcast_to(scale, 3)))
-        thing.material_slots[0].link = "OBJECT"
-        thing.material_slots[0].material = material
-        self.collection.objects.link(thing)
-        return thing
-
-    def place_rod(self, name, material, base, apex, radius):
-        """Add an open cylinder between two points."""
-        base, apex = Vector(base), Vector(apex)
-        turn = (apex - base).to_track_quat("Z", "Y")
-        return self.place(name, self.rod, material, (base + apex) / 2, (radius, radius, (apex - base).length / 2), turn)
-
-
-def new_mesh(kind, **options):
-    """One of the meshes that Blender adds, smooth, with one empty material slot."""
-    getattr(bpy.ops.mesh, f"primitive_{kind}_add")(**options)
-    made = bpy.context.object
-    mesh = made.data
-    mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
-    mesh.materials.append(None)
-    bpy.data.objects.remove(made)
-    return mesh
-
-
 def add_protein(stage, protein):
     """The enzyme as space-filling spheres on the floor, a colour a chain, its two-fold axis upright."""
-    materials = {chain: glossy_paint(f"Chain {chain}", color, 0.5, 0.08) for chain, color in CHAINS.items()}
+    materials = {chain: glossy_paint(f"Chain {chain}", color, 0.5) for chain, color in CHAINS.items()}
     wide, up, _ = principal_axes(protein.position)
     position = protein.position @ np.stack([wide, np.cross(up, wide), up], axis=-1) * NANOMETRE
     radius = protein.radius(VAN_DER_WAALS_RADIUS) * NANOMETRE
@@ -143,7 +105,7 @@ def add_protein(stage, protein):
 
 def add_drug(stage, drug):
     """The drug as balls and sticks above the stand, a colour an element, each bond in the colours of its two atoms."""
-    materials = {element: glossy_paint(f"Atom {element}", color, 0.05, 0.06) for element, color in ELEMENTS.items()}
+    materials = {element: glossy_paint(f"Atom {element}", color, 0.05) for element, color in ELEMENTS.items()}
     long, wide, _ = principal_axes(drug.position)
     axes = np.stack([long, np.cross(wide, long), wide], axis=-1)
     position = (drug.position - drug.position.mean(axis=0)) @ axes * (NANOMETRE * DRUG_SIZE)
@@ -170,16 +132,15 @@ def add_still_life(stage):
     stage.place("Glass Sphere", stage.ball, glass, (1.3, -2.4, 0.82), 0.82)
     mirror = new_material("Mirror", "ShaderNodeBsdfGlossy", {"Color": (0.92, 0.93, 0.95), "Roughness": 0.0})
     stage.place("Mirror Sphere", stage.ball, mirror, (3.95, -0.2, 1.0), 1.0)
-    stage.place("Cone", stage.cone, glossy_paint("Cone", "e8803a", 0.05, 0.05), (3.0, -2.9, 0.525), (0.42, 0.42, 0.525))
+    stage.place("Cone", stage.cone, glossy_paint("Cone", "e8803a", 0.05), (3.0, -2.9, 0.525), (0.42, 0.42, 0.525))
     image = new_image("Globe", globe(), is_float=False)
     earth = new_material("Globe", "ShaderNodeBsdfPrincipled", {"Base Color": image, "Roughness": 0.05})
     stage.place("Globe", stage.ball, earth, (-4.55, 0.3, 0.85), 0.85, Euler((0.0, radians(23.0), radians(165.0))))
 
 
-def glossy_paint(name, color, roughness, glow=0.0):
-    """Paint of a colour; its own `glow` lifts what no lamp reaches out of the black."""
+def glossy_paint(name, color, roughness):
+    """Paint of a colour."""
     inputs = {"Base Color": linear(color), "Roughness": roughness}
-    inputs |= {"Emission Color": linear(color), "Emission Strength": glow}
     return new_material(name, "ShaderNodeBsdfPrincipled", inputs)
 
 
@@ -206,31 +167,12 @@ def set_shader(owner, shader, inputs, output, image_node):
             node.inputs[name].default_value = value if np.isscalar(value) else (*value, 1.0)
 
 
-def new_image(name, pixels, is_float):
-    """Pixels (h, w, 3) as an image that a .blend file keeps: scene-linear if `is_float`, otherwise in sRGB."""
-    height, width, _ = pixels.shape
-    image = bpy.data.images.new(name, width, height, float_buffer=is_float)
-    image.pixels.foreach_set(np.concatenate([pixels, np.ones((height, width, 1))], -1).astype(np.float32).ravel())
-    image.update()
-    image.pack()
-    return image
-
-
 def add_world():
     world = bpy.data.worlds.new("Studio")
     image = new_image("Studio", studio(linear("a9bccb"), linear("2f4a6b"), SOFTBOXES), is_float=True)
     inputs = {"Color": image, "Strength": 1.0}
     set_shader(world, "ShaderNodeBackground", inputs, "ShaderNodeOutputWorld", "ShaderNodeTexEnvironment")
     return world
-
-
-def add_camera(stage, eye, target):
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.data.lens = 45.0
-    camera.location = eye
-    camera.rotation_euler = (Vector(target) - Vector(eye)).to_track_quat("-Z", "Y").to_euler()
-    stage.collection.objects.link(camera)
-    return camera
 
 
 if __name__ == "__main__":

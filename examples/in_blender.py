@@ -37,6 +37,7 @@ def parser_of(script, description, *, size, samples=8):
     parser.add_argument("--blend", metavar="FILE", help="save the scene as this .blend file")
     parser.add_argument("--size", type=int, nargs=2, default=size, metavar=("W", "H"))
     parser.add_argument("--samples", type=int, default=samples)
+    parser.add_argument("--engine", choices=("CONIC", "CYCLES"), default="CONIC", help="what renders it")
     return parser
 
 
@@ -66,10 +67,28 @@ def new_light(kind, location, energy, color):
     return lamp
 
 
+def _render_by_cycles(scene, samples):
+    """Let Cycles follow the same light: lamps, sky and what glows on what is diffuse, and the rays of mirrors and
+    glass."""
+    if not hasattr(scene, "cycles"):
+        import addon_utils
+
+        addon_utils.enable("cycles")
+    scene.render.engine = "CYCLES"
+    cycles = scene.cycles
+    cycles.device, cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = "CPU", samples, False, False
+    cycles.max_bounces, cycles.diffuse_bounces = scene.conic.max_depth - 1, 0
+    cycles.glossy_bounces = cycles.transmission_bounces = cycles.transparent_max_bounces = scene.conic.max_depth - 1
+    cycles.blur_glossy = 0.0
+    cycles.caustics_reflective = cycles.caustics_refractive = True
+
+
 def finish(scene, options):
     """Save and render the scene as the options say."""
     scene.render.resolution_x, scene.render.resolution_y = options.size
     scene.conic.samples = options.samples
+    if options.engine == "CYCLES":
+        _render_by_cycles(scene, options.samples)
     if options.blend:
         bpy.ops.wm.save_as_mainfile(filepath=str(Path(options.blend).resolve()), compress=True)
     if options.output:

@@ -15,6 +15,7 @@ from contextlib import ExitStack
 from dataclasses import replace
 
 from .errors import ConicError
+from .film_options import LARGEST_LINE, DepthCue, Outlines
 from .image_file import check_suffix, write_image
 from .nff import NffError, read_nff
 from .output_file import check_writable, written_whole
@@ -65,6 +66,15 @@ def _parse(arguments):
         action="store_true",
         help="the databases' rules: corner rays averaged, depth 5 unless --depth, no cut-off, 512 512 unless --size",
     )
+    outline = _number(0.0, LARGEST_LINE)
+    parser.add_argument(
+        "--outlines", nargs="?", type=outline, const=Outlines.width, metavar="W", help="outlines, W pixels wide (1.5)"
+    )
+    strength = _number(0.0, 1.0)
+    parser.add_argument(
+        "--depth-cue", nargs="?", type=strength, const=0.8, metavar="S", help="fade the share S of the farthest (0.8)"
+    )
+    parser.add_argument("--flat-colors", action="store_true", help="no shading: surfaces as the file colours them")
     parser.add_argument("--stats", metavar="FILE.json", help="write ray counts, times and sizes")
     options = parser.parse_args(arguments)
     if options.strict and (options.samples or 1) > 1:
@@ -73,13 +83,21 @@ def _parse(arguments):
 
 
 def _whole_number(least, most):
+    return _parser_of(int, "whole number", least, most)
+
+
+def _number(least, most):
+    return _parser_of(float, "number", least, most)
+
+
+def _parser_of(kind, name, least, most):
     def parse(text):
         try:
-            value = int(text)
+            value = kind(text)
         except ValueError:
             value = None
         if value is None or not least <= value <= most:
-            raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {least} to {most}")
+            raise argparse.ArgumentTypeError(f"{text!r} is no {name} from {least} to {most}")
         return value
 
     return parse
@@ -123,7 +141,14 @@ def _settings(options):
     given = {"samples": options.samples, "max_depth": options.depth}
     given = {name: value for name, value in given.items() if value is not None}
     settings = Settings.strict() if options.strict else Settings()
-    return replace(settings, **given, count_rays=bool(options.stats))
+    return replace(
+        settings,
+        **given,
+        count_rays=bool(options.stats),
+        flat_colors=options.flat_colors,
+        outlines=None if options.outlines is None else Outlines(width=options.outlines),
+        depth_cue=None if options.depth_cue is None else DepthCue(strength=options.depth_cue),
+    )
 
 
 def _render(file, settings, progress):

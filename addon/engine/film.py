@@ -108,9 +108,13 @@ class Film:
         unended = total[..., 3] >= UNENDED_ALPHA
         mean[unended, 3] = 1.0
         self.unended = int(unended.sum())
-        if self.corner_rays:
-            mean = (mean[:-1, :-1] + mean[1:, :-1] + mean[:-1, 1:] + mean[1:, 1:]) / 4.0
-        return mean
+        return self.of_pixels(mean)
+
+    def of_pixels(self, values):
+        """Values (height, width, n) of the film's rays as those of its pixels."""
+        if not self.corner_rays:
+            return values
+        return (values[:-1, :-1] + values[1:, :-1] + values[:-1, 1:] + values[1:, 1:]) / 4.0
 
     def counters(self, attachment):
         """Sums over all pixels and samples of an attachment that counts, (4,) float64."""

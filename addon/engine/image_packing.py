@@ -1,33 +1,78 @@
-"""Images as records and texels: any number of them lies in one data texture, one after the other."""
+"""Images as records and texels: any number of them lies in one data texture, one after the other.
+
+A texel is four floats. It holds one pixel of floats; or two of bytes, each as (red + 2^8 green + 2^16 blue, alpha); or,
+where all are opaque, four of bytes: float32 holds whole numbers below 2^24, on any driver.
+"""
 
 import numpy as np
 
 from . import layout
-from .scene import EXTENSIONS, INTERPOLATIONS
+from .image import EXTENSIONS, INTERPOLATIONS
+
+#: Bits of the field `coding`, as in GLSL.
+_SRGB, _DIVIDED = 1, 2
+#: Pixels that are packed at once, so that little memory is needed beside the texture.
+_PIECE = 1 << 20
 
 
 def pack_images(images, limit):
-    """Records (n,) of `layout.IMAGE`, texels (m, 4) float32 and warnings for images of which `limit` texels fit.
+    """Records (n,) of `layout.IMAGE`, a data texture or None, and warnings for images of which `limit` texels fit.
 
     Where all of them together do not fit, the largest are reduced until they do; each that was is named in a warning.
     """
     records = layout.IMAGE.zeros(len(images))
     if not images:
-        return records, np.zeros((0, 4), np.float32), []
-    pixels, warnings = _reduced(images, limit)
-    starts = np.cumsum([0, *(p.shape[0] * p.shape[1] for p in pixels)])
+        return records, None, []
+    pixels, packings, warnings = _reduced(images, limit)
+    starts = np.cumsum([0, *map(_texels, pixels, packings)])
     records["first"], records["first_high"] = layout.split_index(starts[:-1])
     records["height"], records["width"] = np.array([p.shape[:2] for p in pixels]).T
     records["interpolation"] = [INTERPOLATIONS.index(image.interpolation) for image in images]
     records["extension"] = [EXTENSIONS.index(image.extension) for image in images]
-    return records, np.concatenate([p.reshape(-1, 4) for p in pixels]), warnings
+    records["packing"] = packings
+    records["coding"] = [_SRGB * image.srgb + _DIVIDED * image.divided for image in images]
+    texture = layout.data_texture(int(starts[-1]))
+    texels = texture.reshape(-1, 4)
+    for first, picture, packing in zip(starts, pixels, packings, strict=False):
+        _write(texels[first:], picture.reshape(-1, 4), packing)
+    return records, texture, warnings
+
+
+def _packing(pixels):
+    """Base 2 logarithm of how many pixels share a texel."""
+    if pixels.dtype != np.uint8:
+        return 0
+    return 2 if pixels[..., 3].min() == 255 else 1
+
+
+def _texels(pixels, packing):
+    count = pixels.shape[0] * pixels.shape[1]
+    return -(-count >> packing)
+
+
+def _write(texels, pixels, packing):
+    """Write pixels (n, 4) into the first rows of texels (m, 4)."""
+    if packing == 0:
+        texels[: len(pixels)] = pixels
+        return
+    flat = texels.reshape(-1)
+    for first in range(0, len(pixels), _PIECE):
+        piece = pixels[first : first + _PIECE]
+        color = piece[:, 0] + (piece[:, 1].astype(np.int32) << 8) + (piece[:, 2].astype(np.int32) << 16)
+        if packing == 2:
+            flat[first : first + len(piece)] = color
+        else:
+            flat[2 * first : 2 * (first + len(piece)) : 2] = color
+            flat[2 * first + 1 : 2 * (first + len(piece)) : 2] = piece[:, 3]
 
 
 def _reduced(images, limit):
-    """The images' pixels, the largest halved again and again until all their texels fit `limit`, and the warnings."""
+    """The images' pixels, the largest halved again and again until all their texels fit `limit`, how they are packed,
+    and the warnings."""
     pixels, reduced = [image.pixels for image in images], set()
-    while sum(p.shape[0] * p.shape[1] for p in pixels) > limit:
-        largest = max(range(len(pixels)), key=lambda i: pixels[i].size)
+    packings = list(map(_packing, pixels))
+    while sum(map(_texels, pixels, packings)) > limit:
+        largest = max(range(len(pixels)), key=lambda i: _texels(pixels[i], packings[i]))
         reduced.add(largest)
         pixels[largest] = _halved(pixels[largest])
     warnings = []
@@ -37,15 +82,16 @@ def _reduced(images, limit):
             f"image {images[i].name!r} of {width} x {height} is too large for this device and was reduced to "
             f"{columns} x {rows}"
         )
-    return pixels, warnings
+    return pixels, packings, warnings
 
 
 def _halved(pixels):
     """Half as many rows and columns, by averages; an odd last row or column goes into its neighbour."""
+    kind = pixels.dtype
     for axis in (0, 1):
         size = pixels.shape[axis]
         if size > 1:
             starts = np.arange(0, size - size % 2, 2)
             counts = np.diff([*starts, size]).reshape((-1, 1, 1) if axis == 0 else (1, -1, 1))
-            pixels = np.add.reduceat(pixels, starts, axis=axis) / counts.astype(np.float32)
-    return pixels
+            pixels = np.add.reduceat(pixels, starts, axis=axis, dtype=np.float32) / counts.astype(np.float32)
+    return pixels if kind != np.uint8 else np.rint(pixels).astype(np.uint8)

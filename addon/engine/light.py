@@ -6,6 +6,7 @@ from enum import IntEnum
 import numpy as np
 
 from .errors import SceneError
+from .visibility import Visibility
 
 #: Shapes of area lights, by the names of the API.
 _AREA_SHAPES = ("RECTANGLE", "ELLIPSE")
@@ -20,6 +21,10 @@ class LightKind(IntEnum):
     SPOT = 3  # a point or a ball that shines in a cone
     RECTANGLE = 4  # area lights, which shine to one side
     ELLIPSE = 5
+    # Surfaces of the scene that glow; round spheres and discs are POINT and ELLIPSE.
+    TRIANGLE = 6
+    ELLIPSOID = 7
+    TUBE = 8  # side of a cylinder or cone
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,11 @@ class Light:
     angle: float = np.pi  # SPOT: of the cone, full. Area lights: the spread, beyond half of which it is not seen
     blend: float = 0.0  # SPOT: how much of the cone its soft edge takes, 0 to 1
     falls_off: bool = True  # with the square of the distance; says nothing of CONSTANT and SUN, which never do
+    visibility: Visibility = Visibility.ALL
+    """Of DIFFUSE, GLOSSY and TRANSMISSION: the ways of surfaces to send on light in which this one is seen. With an
+    extent it is there to be seen itself: of CAMERA by the camera, of the others in mirrors and through glass."""
+    receivers: int = 0  # the `Visibility.group` that it lights alone; 0: it lights everything
+    blockers: int = 0  # the group that casts its shadows alone; 0: everything does
 
     @classmethod
     def point(cls, position, watts, color=(1.0, 1.0, 1.0), *, radius=0.0, soft=False, shadow=True):
@@ -114,6 +124,23 @@ class Light:
     def shaped(self):
         """Whether it is more than a point or parallel rays."""
         return self.kind >= LightKind.SPOT or self.radius > 0.0 or not self.falls_off
+
+    @property
+    def shown_area(self):
+        """Area that it shows on the mean, of a sun the solid angle; 0 without extent."""
+        if self.kind in (LightKind.POINT, LightKind.SPOT):
+            return np.pi * self.radius**2
+        if self.kind == LightKind.SUN:
+            return 4.0 * np.pi * np.sin(self.radius / 2.0) ** 2
+        if self.kind == LightKind.CONSTANT:
+            return 0.0
+        return np.linalg.norm(np.cross(*self.axes[:2])) * (4.0 if self.kind == LightKind.RECTANGLE else np.pi)
+
+    @property
+    def rays(self):
+        """`visibility` with SHADOW where it casts shadows."""
+        bits = self.visibility & (Visibility.ALL & ~Visibility.SHADOW)
+        return bits | Visibility.SHADOW if self.shadow else bits
 
 
 def _spread_gain(spread):

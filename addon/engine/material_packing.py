@@ -1,16 +1,52 @@
-"""Materials as records: the scene's own, then a block for each tuple of materials in the slots of instances."""
+"""Materials as records: the scene's own, then a block for each tuple of materials in the slots of instances, then the
+world as one whose glow is seen; and the programs of those that vary."""
+
+from functools import cached_property
 
 import numpy as np
 
 from . import layout
 from .errors import SceneError
-from .scene import Material
+from .expression import Call, Expression, as_type, attribute_keys, in_order, is_constant, is_zero, vanishes
+from .material import Material
+from .node_programs import NodePrograms, constant_texels
 
-_ROLES = ("diffuse", "reflect", "transmit", "glow")
+_LARGEST = float(np.finfo(np.float32).max)
+#: Members of the record that expressions give, with their limits and what stands for them where one number must do.
+_MEMBERS = {
+    "diffuse": ("vec3", 0.0, _LARGEST, 0.5),
+    "reflect": ("vec3", 0.0, 1.0, 0.5),
+    "transmit": ("vec3", 0.0, 1.0, 0.5),
+    "glow": ("vec3", 0.0, _LARGEST, 0.5),
+    "absorption": ("vec3", 0.0, _LARGEST, 0.0),
+    "highlight": ("vec3", 0.0, _LARGEST, 0.0),
+    "metallic": ("vec3", 0.0, 1.0, 0.5),
+    "grazing": ("vec3", 0.0, 1.0, 0.5),
+    "edge": ("vec3", 0.0, 1.0, 1.0),
+    "translucent": ("vec3", 0.0, 1.0, 0.5),
+    "coat": ("vec3", 0.0, 1.0, 0.5),
+    "coat_tint": ("vec3", 0.0, 1.0, 1.0),
+    "normal": ("vec3", -_LARGEST, _LARGEST, 0.0),
+    "roughness": ("float", 0.0, 1.0, 0.5),
+    "transmit_roughness": ("float", 0.0, 1.0, 0.5),
+    "coat_roughness": ("float", 0.0, 1.0, 0.5),
+    "diffuse_roughness": ("float", 0.0, 1.0, 0.5),
+    "diffuse_covered": ("float", 0.0, 1.0, 0.5),
+    "transmit_covered": ("float", 0.0, 1.0, 0.5),
+    "holdout": ("float", 0.0, 1.0, 0.0),
+    "ior": ("float", 1e-3, 1e3, 1.5),
+    "fresnel_ior": ("float", 0.0, 1e3, 0.0),
+    "coat_ior": ("float", 1e-3, 1e3, 1.5),
+    "shine": ("float", 0.0, _LARGEST, 1.0),
+    "fresnel": ("float", 0.0, 1.0, 1.0),
+    "multiscatter": ("float", 0.0, 1.0, 0.0),
+}
+_FLAGS = ("bounds_body", "cull_back", "cull_back_shadow")
 
 
 class MaterialTable:
-    """The materials of a scene in the order of their records. Raises SceneError where one is used that is not there."""
+    """The materials of a scene in the order of their records, `materials`, and their `programs`. Raises SceneError
+    where one is used that is not there."""
 
     def __init__(self, scene, plan):
         self._count = max(len(scene.materials), 1)  # a scene without materials has the default one
@@ -23,6 +59,9 @@ class MaterialTable:
             self._check(planes.material, "a plane")
         for placed in plan.placed:
             self.first(placed, plan)
+        self._world = Material(diffuse=0.0, glow=scene.world.radiance)
+        self.programs = NodePrograms()
+        self._program_of = {id(m): self._program(m, self.programs) for m in (*self.materials, self._world)}
         self._check_images(scene)
 
     def first(self, placed, plan):
@@ -41,26 +80,73 @@ class MaterialTable:
                 self.materials += [self.materials[slot] for slot in block]
         return self._blocks[block]
 
+    @cached_property
+    def world_programs(self):
+        """The `NodePrograms` of the world alone, and its `Program` there, None where it is the same everywhere."""
+        programs = NodePrograms()
+        return programs, self._program(self._world, programs)
+
+    @property
+    def world(self):
+        """Number of the record of the world."""
+        return len(self.materials)
+
     def records(self, attributes):
-        """Records of `layout.MATERIAL`; `attributes` is the plan's `AttributePlan`."""
-        records = layout.MATERIAL.zeros(len(self.materials))
-        for name in (name for name in records.dtype.names if name != "unused"):
-            values = [getattr(material, name) for material in self.materials]
-            records[name] = list(map(attributes.number, values)) if name.endswith("_attribute") else values
-        return records
+        """(Records of `layout.MATERIAL`, of `layout.CONSTANT`); `attributes` is the plan's `AttributePlan`."""
+        materials = [*self.materials, self._world]
+        records = layout.MATERIAL.zeros(len(materials))
+        for name, (kind, low, high, stand_in) in _MEMBERS.items():
+            values = [_constant(getattr(material, name), kind, stand_in) for material in materials]
+            records[name] = np.clip(np.reshape(values, records[name].shape), low, high)
+        for name in _FLAGS:
+            records[name] = [getattr(material, name) for material in materials]
+        texels, first = [np.zeros((0, 4), np.float32)], {}
+        end = 0
+        for material, record in zip(materials, records, strict=True):
+            program = self._program_of[id(material)]
+            if program is None:
+                continue
+            if id(program) not in first:
+                first[id(program)] = end
+                texels.append(constant_texels(program, end, attributes.number))
+                end += len(texels[-1])
+            record["program"], record["constants"] = program.number, first[id(program)]
+        return records, np.concatenate(texels).view(layout.CONSTANT.dtype)[:, 0]
 
     def features(self):
-        """Features of the shader that the materials make use of."""
+        """Features of the shader that the materials make use of, by their structure: a parameter that is zero now may
+        not be so the next time."""
         used = {
-            "HAS_IMAGES": lambda m: any(getattr(m, f"{role}_image") >= 0 for role in _ROLES),
-            "HAS_ATTRIBUTES": lambda m: any(getattr(m, f"{role}_attribute") for role in _ROLES),
-            "HAS_ABSORPTION": lambda m: max(m.absorption) > 0.0,
-            "HAS_ROUGHNESS": lambda m: max(m.roughness, m.transmit_roughness) > 0.0,
-            "HAS_METALS": lambda m: max(m.grazing) > 0.0 or min(m.edge) < 1.0,
+            "HAS_ABSORPTION": lambda m: not is_zero(m.absorption),
+            "HAS_ROUGHNESS": lambda m: not (is_zero(m.roughness) and is_zero(m.transmit_roughness)) or _has_coat(m),
+            "HAS_METALS": lambda m: not (is_zero(m.metallic) and is_zero(m.grazing)),
+            "HAS_COAT": _has_coat,
+            "HAS_TRANSLUCENT": lambda m: not is_zero(m.translucent),
+            "HAS_DIFFUSE_ROUGHNESS": lambda m: not is_zero(m.diffuse_roughness),
+            "HAS_NORMALS": lambda m: not is_zero(m.normal),
+            "HAS_HOLDOUT_SHARE": lambda m: not is_zero(m.holdout),
             "HAS_CULLING": lambda m: m.cull_back,
             "CULLED_SHADOWS": lambda m: m.cull_back_shadow,
+            "TINTED_SHADOWS": lambda m: not is_zero(m.transmit),
         }
-        return {feature for feature, uses in used.items() if any(map(uses, self.materials))}
+        found = {feature for feature, uses in used.items() if any(map(uses, self.materials))}
+        if len(self.programs):
+            found |= {"HAS_PROGRAMS", *self.programs.features()}
+        return found
+
+    def lets_shadows_pass(self, tinted):
+        """Whether shadow rays may pass through a surface, `tinted` if they may through what transmits."""
+        return any(m.cull_back_shadow or (tinted and _may_transmit(m)) for m in self.materials)
+
+    def _program(self, material, programs):
+        """The `Program` of a material among `programs`; None for one that is the same everywhere."""
+        members = {}
+        for name, (kind, low, high, _) in _MEMBERS.items():
+            value = getattr(material, name)
+            if isinstance(value, Call):
+                text = f"operator_within({{0}}, {_text(low)}, {_text(high)})"
+                members[name] = as_type(value, kind), text
+        return programs.add(members) if members else None
 
     def _check(self, material, what):
         bad = (material < 0) | (material >= self._count)
@@ -68,15 +154,45 @@ class MaterialTable:
             raise SceneError(f"{what} uses material {int(material[np.argmax(bad)])}, the scene has {self._count}")
 
     def _check_images(self, scene):
-        for number, material in enumerate(self.materials[: self._count]):
-            for role in _ROLES:
-                check_image(scene, getattr(material, f"{role}_image"), f"material {number}")
+        users = [(material, f"material {number}") for number, material in enumerate(self.materials[: self._count])]
+        for material, user in (*users, (self._world, "the world")):
+            for node in in_order(expressions_of(material)):
+                if isinstance(node, Call) and node.name.startswith("image_sample"):
+                    number = int(node.inputs[0].value[0])
+                    if number >= len(scene.images):
+                        raise SceneError(f"{user} uses image {number}, the scene has {len(scene.images)}")
 
 
-def check_image(scene, image, user):
-    """Raise SceneError where a scene lacks the image of a number that `user` names."""
-    if image >= len(scene.images):
-        raise SceneError(f"{user} uses image {image}, the scene has {len(scene.images)}")
+def expressions_of(material):
+    """The members of a material that vary."""
+    return tuple(v for name in _MEMBERS if isinstance(v := getattr(material, name), Call))
+
+
+def attribute_names(scene):
+    """Names of the attributes that the materials and the outlines of a scene need, sorted."""
+    names = attribute_keys([e for material in scene.materials for e in expressions_of(material)])
+    return tuple(sorted({*names, scene.outline_attribute} - {""}))
+
+
+def _has_coat(material):
+    return not is_zero(material.coat)
+
+
+def _may_transmit(material):
+    value = material.transmit
+    return not vanishes(value) if isinstance(value, Expression) else max(value) > 0.0
+
+
+def _constant(value, kind, stand_in):
+    """The numbers of a member, of one that varies those that stand for it."""
+    size = 1 if kind == "float" else 3
+    if is_constant(value):
+        return as_type(value, kind).value
+    return np.broadcast_to(stand_in if isinstance(value, Expression) else value, (size,))
+
+
+def _text(number):
+    return repr(float(np.float32(number)))
 
 
 def _slots(geometry):

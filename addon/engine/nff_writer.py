@@ -5,6 +5,7 @@ no words for."""
 import numpy as np
 
 from .errors import SceneError
+from .material_packing import expressions_of
 from .output_file import written_whole
 from .primitives import Cones, Cylinders, Discs, Spheres, Triangles
 from .scene import LightKind
@@ -92,11 +93,10 @@ def _shapes(scene):
 
 def _material(material, index):
     name = f"material {index}: "
+    _refuse(bool(expressions_of(material)), name + "values that vary over the surface")
     _refuse(material.fresnel, name + "Fresnel reflection; make it with fresnel=False")
     _refuse(any(material.glow), name + "glow")
     _refuse(any(material.absorption), name + "absorption")
-    images = (material.diffuse_image, material.reflect_image, material.transmit_image, material.glow_image)
-    _refuse(max(images) >= 0, name + "an image texture")
     for what, color in (("mirror", material.reflect), ("transmittance", material.transmit)):
         _refuse(len(set(color)) > 1, name + f"a coloured {what}")
     _refuse(material.reflect != material.highlight, name + "a highlight other than the mirror: both are Ks")

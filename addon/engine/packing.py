@@ -11,9 +11,10 @@ import numpy as np
 
 from . import bvh, instance_packing, layout
 from .errors import SceneError
+from .expression import is_zero
 from .image_packing import pack_images
-from .light_packing import pack_lights
-from .material_packing import MaterialTable, check_image
+from .light_packing import pack_all_lights
+from .material_packing import MaterialTable
 from .plan import PLANE_ATTRIBUTES, check_texels, make_plan
 from .primitives import BY_KIND, Similarity, invertible
 from .scene import Visibility
@@ -25,15 +26,25 @@ from .tree_packing import TreePacker, pieces
 class PackedScene:
     """What a session uploads. `textures`: float32 (height, width, 4) by name. `frame`: values of the `Frame` record
     that depend on the scene alone. `features` and `constants`: of the shader. `origin` (3,): what positions are
-    relative to. `statistics`: see `Session.statistics`."""
+    relative to. `bounds` (2, 3): of all but planes. `statistics`: see `Session.statistics`."""
 
     origin: np.ndarray
     textures: dict
     frame: dict
     features: frozenset
     constants: dict
+    programs: str
+    world: object
+    world_programs: object
+    shadows_pass: dict  # whether shadow rays may pass through something, by whether they are tinted
+    bounds: np.ndarray
     statistics: dict
     warnings: list = field(default_factory=list)
+
+    @property
+    def lit_by_surfaces_alone(self):
+        """Whether surfaces that glow are the only lights."""
+        return self.frame["emitter_count"] > 0 and not self.frame["light_count"] and not self.world.lights
 
 
 def pack(scene, max_texture_size):
@@ -65,6 +76,13 @@ def _check_matrices(scene):
             raise SceneError(
                 f"instance {placed.name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
             )
+
+
+def _bounds_of(top, trees):
+    """The box (2, 3) of everything that stands in trees, zero without any."""
+    if top is not None:
+        return top.bounds
+    return next((tree.bounds for tree in trees.trees.values()), np.zeros((2, 3)))
 
 
 def _origin(scene, plan):
@@ -110,7 +128,6 @@ class _Packer:
         self.plan.check(limit)
         _check_matrices(scene)
         self.materials = MaterialTable(scene, self.plan)
-        check_image(scene, scene.world.image, "the world")
         self.origin = _origin(scene, self.plan)
         self.textures, self.frame, self.warnings = {}, {}, []
 
@@ -127,12 +144,13 @@ class _Packer:
         planes = self._tables()
         self._warn_of_darkness()
         self.frame |= {
-            "light_count": len(self.scene.lights),
+            **self.lights.frame,
             "plane_count": len(planes),
             "root_count": len(trees.trees),
             "geometry_count": len(plan.geometries),
-            "world_color": self.scene.world.color,
-            "world_image": self.scene.world.image,
+            "world_material": self.materials.world,
+            "outline_attribute": self._outline_attribute(),
+            "world_visibility": int(self.scene.world.visibility),
         }
         depth = max((tree.depth for tree in trees.trees.values()), default=0) + (top.depth if top is not None else 0)
         return PackedScene(
@@ -142,9 +160,18 @@ class _Packer:
             features=self._features(planes),
             # References that can wait in a traversal, rounded up so that few programs are made.
             constants={"BVH_STACK_SIZE": -(-(depth + 1) // 8) * 8},
+            programs=self.materials.programs.text(),
+            world=self.scene.world,
+            world_programs=self.materials.world_programs,
+            shadows_pass={t: self.lights.varies or self.materials.lets_shadows_pass(t) for t in (False, True)},
+            bounds=_bounds_of(top, trees),
             statistics=self._statistics(trees, top, depth),
             warnings=self.warnings,
         )
+
+    def _outline_attribute(self):
+        name = self.scene.outline_attribute
+        return self.plan.attributes.number(name) if name else -1
 
     def _attribute_texels(self):
         """Where the values of attributes go, (n, 4): the texels of their texture. Planes' are written already."""
@@ -184,11 +211,14 @@ class _Packer:
     def _tables(self):
         """Write the records that share the texture `tables`; those of the planes."""
         planes, plane_surfaces = self._planes()
-        lights, light_shapes = pack_lights(self.scene.lights, self.origin)
+        self.lights = pack_all_lights(self.scene, self.plan, self.materials, self.origin)
+        self.warnings += self.lights.warnings
+        materials, constants = self.materials.records(self.plan.attributes)
+        materials["glow_area"][: len(self.lights.glow_area)] = self.lights.glow_area
         records = {
-            "material": self.materials.records(self.plan.attributes),
-            "light": lights,
-            "light_shape": light_shapes,
+            "material": materials,
+            "constant": constants,
+            **self.lights.records,
             "plane": planes,
             "plane_surface": plane_surfaces,
             "image": self._images(),
@@ -214,19 +244,19 @@ class _Packer:
 
     def _images(self):
         """Image records; their texels go in the texture `images`, reduced where they would not fit."""
-        records, texels, warnings = pack_images(self.scene.images, self.limit)
-        if len(texels):
-            self.textures["images"] = layout.data_texture(len(texels))
-            self.textures["images"].reshape(-1, 4)[: len(texels)] = texels
+        records, texture, warnings = pack_images(self.scene.images, self.limit)
+        if texture is not None:
+            self.textures["images"] = texture
         self.warnings += warnings
         return records
 
     def _warn_of_darkness(self):
-        diffuse = any(max(material.diffuse) > 0.0 for material in self.materials.materials)
-        if diffuse and not self.scene.lights and (len(self.plan.built) or self.scene.planes):
+        diffuse = any(not is_zero(material.diffuse) for material in self.materials.materials)
+        lit = len(self.lights.records["light"]) or self.scene.world.lights
+        if diffuse and not lit and (len(self.plan.built) or self.scene.planes):
             self.warnings.append(
-                "the scene has no light: the sky and what glows are seen but light nothing, so that other surfaces are "
-                "black; add a light"
+                "the scene has no light: the sky is seen but lights nothing, so that other surfaces are black; "
+                "add a light"
             )
 
     # The whole
@@ -239,11 +269,10 @@ class _Packer:
             features.add("HAS_PLANE")
         if self.plan.placed:
             features.add("HAS_INSTANCES")
-        if self.scene.world.image >= 0:
-            features.add("HAS_WORLD_IMAGE")
+        if self.plan.attributes.names:
+            features.add("HAS_ATTRIBUTES")
         seen = {int(p.visibility) for p in self.plan.placed} | set(np.unique(planes["visibility"]).astype(int).tolist())
-        if any(light.shaped for light in self.scene.lights):
-            features.add("HAS_LIGHT_SHAPES")
+        features |= self.lights.features
         if any(~bits & Visibility.ALL for bits in seen):
             features.add("HAS_VISIBILITY")
         if any(bits & Visibility.HOLDOUT for bits in seen):

@@ -10,6 +10,7 @@ import numpy as np
 
 from . import layout
 from .errors import SceneError
+from .material_packing import attribute_names
 from .primitives import BY_KIND
 
 _INSTANCE = layout.KINDS.index("instance")
@@ -115,8 +116,8 @@ class AttributePlan:
     texels: int
 
     def number(self, name):
-        """Number of an attribute, -1 for none ("")."""
-        return self.names.index(name) if name else -1
+        """Number of an attribute."""
+        return self.names.index(name)
 
 
 def make_plan(scene):
@@ -136,8 +137,7 @@ def make_plan(scene):
 
 
 def _plan_attributes(scene, plan):
-    fields = ("diffuse_attribute", "reflect_attribute", "transmit_attribute", "glow_attribute")
-    names = tuple(sorted({getattr(material, name) for material in scene.materials for name in fields} - {""}))
+    names = attribute_names(scene)
     shape = (len(names), len(plan.geometries) + 1, len(layout.KINDS))
     width, base, texels = (np.zeros(shape, np.int64) for _ in range(3))
     for place, primitives in _parts_with_attributes(scene, plan):

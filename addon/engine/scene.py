@@ -9,132 +9,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .errors import SceneError
+from .image import Image as Image
 from .light import Light as Light
 from .light import LightKind as LightKind
+from .material import Material as Material
+from .material import World as World
 from .primitives import BY_KIND, Cones, Cylinders, Discs, Planes, Spheres, Triangles
 from .visibility import Visibility
-
-
-def _checked_color(name, value):
-    """Three floats from a colour or one number for all three; SceneError where one is negative or not finite."""
-    value = np.broadcast_to(np.asarray(value, np.float64), (3,))
-    if not np.isfinite(value).all() or (value < 0.0).any():
-        raise SceneError(f"{name} is {tuple(value.tolist())}; it must be finite and not negative")
-    return tuple(value.tolist())
-
-
-@dataclass(frozen=True)
-class Material:
-    """The paper's colour class (3.1.1): glow g, reflect r, transmit t, diffuse d, index n0, and absorption.
-
-    Colours are scene-linear RGB; each `*_image` is the index of an image in `Scene.images` that multiplies the colour
-    by the surface's uv, -1 for none; each `*_attribute` the name of an attribute whose rgb multiplies it, "" for none:
-    the primitive's where its geometry has it, else the instance's, else 0. With `fresnel` the mirror ray has weight r
-    F, the refracted one t (1 - F), and the diffuse share is d (1 - F), F the exact unpolarised reflectance; without it
-    the shares are the constants, as NFF has them.
-
-    Metals are without `fresnel`: their share grows from r to `grazing` at grazing incidence after Schlick, and `edge`
-    tints it near 82 degrees (Hoffman 2023, Generating Real-Time Rendering's F82). `roughness` is that of Blender: of
-    microfacets of the GGX distribution whose alpha is its square; with it the lights have highlights, and with more
-    than one sample the rays are spread. Rough facets lose what they reflect to each other; with `multiscatter` mirrors
-    and metals give it back.
-    """
-
-    diffuse: tuple = (0.8, 0.8, 0.8)
-    reflect: tuple = (0.0, 0.0, 0.0)
-    transmit: tuple = (0.0, 0.0, 0.0)
-    glow: tuple = (0.0, 0.0, 0.0)
-    ior: float = 1.5
-    absorption: tuple = (0.0, 0.0, 0.0)  # 1 / length, Beer-Lambert, inside the body
-    fresnel: bool = True
-    highlight: tuple = (0.0, 0.0, 0.0)  # weight of the lights' Phong highlight
-    shine: float = 1.0  # its exponent
-    diffuse_image: int = -1
-    reflect_image: int = -1
-    transmit_image: int = -1
-    glow_image: int = -1
-    diffuse_attribute: str = ""
-    reflect_attribute: str = ""
-    transmit_attribute: str = ""
-    glow_attribute: str = ""
-    roughness: float = 0.0  # of the mirror
-    transmit_roughness: float = 0.0
-    grazing: tuple = (0.0, 0.0, 0.0)
-    edge: tuple = (1.0, 1.0, 1.0)
-    multiscatter: bool = False
-    bounds_body: bool = True  # False: a single sheet, which bends light but is no border of a medium
-    cull_back: bool = False  # rays that meet the back pass through, shadow rays only with the next
-    cull_back_shadow: bool = False
-
-    def __post_init__(self):
-        for name in ("diffuse", "reflect", "transmit", "glow", "absorption", "highlight", "grazing", "edge"):
-            object.__setattr__(self, name, _checked_color(f"material: {name}", getattr(self, name)))
-        if not (np.isfinite(self.ior) and self.ior > 0.0):
-            raise SceneError(f"material: the index of refraction is {self.ior}; it must be positive")
-        if not (np.isfinite(self.shine) and self.shine >= 0.0):
-            raise SceneError(f"material: shine is {self.shine}; it must be finite and not negative")
-        for name in ("roughness", "transmit_roughness"):
-            if not 0.0 <= getattr(self, name) <= 1.0:
-                raise SceneError(f"material: {name} is {getattr(self, name)}; it must lie between 0 and 1")
-
-    @classmethod
-    def mirror(cls, color=(1.0, 1.0, 1.0), roughness=0.0):
-        return cls(diffuse=0.0, reflect=color, roughness=roughness, fresnel=False)
-
-    @classmethod
-    def metal(cls, color, roughness=0.0, edge=(1.0, 1.0, 1.0)):
-        return cls(diffuse=0.0, reflect=color, roughness=roughness, grazing=1.0, edge=edge, fresnel=False)
-
-    @classmethod
-    def glass(cls, color=(1.0, 1.0, 1.0), ior=1.5, absorption=(0.0, 0.0, 0.0), roughness=0.0):
-        rough = {"roughness": roughness, "transmit_roughness": roughness}
-        return cls(diffuse=0.0, reflect=1.0, transmit=color, ior=ior, absorption=absorption, **rough)
-
-    @classmethod
-    def plastic(cls, color, ior=1.5, roughness=0.0):
-        """A diffuse body under a clear surface."""
-        return cls(diffuse=color, reflect=1.0, ior=ior, roughness=roughness)
-
-
-@dataclass(frozen=True)
-class Image:
-    """A picture by uv: pixels (height, width, 4) float32, scene-linear, premultiplied alpha, bottom row first."""
-
-    pixels: np.ndarray
-    interpolation: str = "LINEAR"  # or CLOSEST
-    extension: str = "REPEAT"  # or EXTEND, CLIP
-    name: str = ""
-
-    def __post_init__(self):
-        pixels = np.asarray(self.pixels)
-        if pixels.ndim != 3 or pixels.shape[2] not in (3, 4) or 0 in pixels.shape:
-            raise SceneError(f"image {self.name!r}: shape {pixels.shape}, expected (height, width, 3 or 4)")
-        if pixels.shape[2] == 3:
-            pixels = np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)
-        object.__setattr__(self, "pixels", np.ascontiguousarray(pixels, np.float32))
-        if self.interpolation not in INTERPOLATIONS or self.extension not in EXTENSIONS:
-            raise SceneError(
-                f"image {self.name!r}: interpolation {self.interpolation!r} of {INTERPOLATIONS}, "
-                f"extension {self.extension!r} of {EXTENSIONS}"
-            )
-
-
-INTERPOLATIONS = ("CLOSEST", "LINEAR")
-EXTENSIONS = ("REPEAT", "EXTEND", "CLIP")
-
-
-@dataclass(frozen=True)
-class World:
-    """What a ray that hits nothing sees: `color`, times an equirectangular image where there is one.
-
-    The image is seen as Blender maps it: its centre towards +X, u = 1/2 - atan2(y, x) / 2 pi.
-    """
-
-    color: tuple = (0.05, 0.05, 0.05)
-    image: int = -1
-
-    def __post_init__(self):
-        object.__setattr__(self, "color", _checked_color("world: color", self.color))
 
 
 @dataclass(frozen=True)
@@ -260,7 +141,8 @@ class Scene:
 
     Shapes that keep their form (see `keeps_shapes`) go straight into `shapes`, one geometry in world space whose
     material slots are the scene's materials. Meshes and stretched shapes are geometries of `instances`, a list of
-    `Instances`. `planes` is a list of infinite planes.
+    `Instances`. `planes` is a list of infinite planes. `outline_attribute`: the attribute whose values have an outline
+    each, where outlines go around one.
     """
 
     camera: Camera | None = None
@@ -271,6 +153,7 @@ class Scene:
     shapes: Geometry = field(default_factory=lambda: Geometry(name="world"))
     instances: list = field(default_factory=list)
     planes: list = field(default_factory=list)
+    outline_attribute: str = ""
 
     def add_material(self, material):
         """Append a material; its index."""

@@ -6,18 +6,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import layout, shader_source
+from . import depth_cue, layout, outlines, shader_source
 from .errors import ConicError, SceneError
 from .film import UNENDED_ALPHA, Film
+from .outlines import OutlinePass
 from .packing import pack
 from .settings import Settings
 from .timing import timed
+from .visibility import Visibility
+from .world_light import light_of_world, world_digest
 
 #: Surfaces that a tinted shadow ray may pass before it counts as blocked.
 _TINTED_SHADOW_SURFACES = 32
 
 _STAGES = ("build", "upload", "compile", "trace", "first_picture")
 
+_GLOWS_IN_VAIN = (
+    "all light comes from surfaces that glow, which light others only in a picture of more than one sample; "
+    "take more samples or add a light"
+)
 _UNENDED = (
     "some pixels are too dark: this driver gives up samples that take very many steps; use a GPU, fewer lights, "
     "a lower maximum depth or a higher cut-off"
@@ -40,6 +47,8 @@ class Session:
         self.device = device
         self.warnings = []
         self._textures, self._texture_bytes, self._film, self._packed, self._program = {}, {}, None, None, None
+        self._outlines, self._pixel_size = None, 1.0
+        self._world_light, self._world_drawn = None, b""  # the light of the world of this digest
         self._seconds = dict.fromkeys(_STAGES, 0.0)
 
     def load(self, scene, settings):
@@ -50,11 +59,15 @@ class Session:
     def build(self, scene, settings):
         """The part of `load` that is the processor's work alone; it needs no GPU context and no particular thread."""
         self._loading_since = time.perf_counter()
+        if settings.outlines and settings.outlines.around == "ATTRIBUTE" and not scene.outline_attribute:
+            raise SceneError("outlines go around the values of an attribute, but the scene does not say of which")
         self._packed = pack(scene, self.device.max_texture_size)
+        self._world_digest = world_digest(self._packed) if settings.world_light != "NONE" else b""
         self.settings, self.camera = settings, scene.camera
         self.warnings = list(self._packed.warnings)
+        if settings.samples == 1 and self._packed.lit_by_surfaces_alone:
+            self.warnings.append(_GLOWS_IN_VAIN)
         self._counts = settings.count_rays or settings.may_drop
-        self._transmits = any(max(material.transmit) > 0.0 for material in scene.materials)
         self._seconds = dict.fromkeys(_STAGES, 0.0) | self._packed.statistics["seconds"]
 
     def upload(self):
@@ -67,30 +80,63 @@ class Session:
                 name, texels = textures.popitem()
                 self._textures[name] = self.device.texture(texels)
                 del texels
+            self._upload_world_light()
         with timed(self._seconds, "compile"):
             self._program = self.device.program(self._source())
+            if self._outlines:
+                self._outlines.release()
+            self._outlines = OutlinePass(self.device, self.settings) if self.settings.outlines else None
         self._drawn = False
 
+    def _upload_world_light(self):
+        if self._world_digest != self._world_drawn:
+            self._world_drawn, self._world_light = self._world_digest, None
+            if self._world_digest:
+                self._world_light = light_of_world(self.device, self._packed, self._textures)
+        if self._world_light and self.settings.samples_world:
+            texels = self._world_light.texels
+            self._textures["world_light"] = self.device.texture(texels)
+            self._texture_bytes["world_light"] = texels.nbytes
+
+    def _world_features(self):
+        if self._world_light is None:
+            return set()
+        if self.settings.samples_world:
+            return {"HAS_WORLD_LIGHT"} | ({"HAS_WORLD_GLOSS"} if self._gloss_asks_world() else set())
+        return {"HAS_HEMISPHERE_LIGHT"} | ({"HAS_AMBIENT_OCCLUSION"} if self.settings.use_ao else set())
+
+    def _gloss_asks_world(self):
+        """Whether what is rough asks bright parts of the world for light, as what is diffuse does: where the world is
+        the same for all rays, and not the same everywhere."""
+        packed, rays = self._packed, Visibility.DIFFUSE | Visibility.GLOSSY | Visibility.TRANSMISSION
+        programs, program = packed.world_programs
+        alike = packed.world.visibility & rays == rays and "HAS_LIGHT_PATH" not in programs.features()
+        return alike and program is not None and "HAS_ROUGHNESS" in packed.features
+
     def _source(self):
-        features = set(self._packed.features)
-        if self.settings.tinted_shadows and self._transmits:
-            features.add("TINTED_SHADOWS")
+        features = self._packed.features | self._world_features() | self.settings.film_features
+        if not self.settings.tinted_shadows:
+            features -= {"TINTED_SHADOWS"}
         if self._counts:
-            features.add("COUNT_RAYS")
+            features |= {"COUNT_RAYS"}
         constants = self._packed.constants | {
             "PATH_STACK_SIZE": self.settings.stack_size,
             "TINTED_SHADOW_SURFACES": _TINTED_SHADOW_SURFACES,
             "UNENDED_ALPHA": UNENDED_ALPHA,
         }
-        return shader_source.program("trace_frag.glsl", features, constants, self._outputs)
+        programs = (("programs_lib.glsl", self._packed.programs),)
+        return shader_source.program("trace_frag.glsl", features, constants, self._outputs, generated=programs)
 
     @property
     def _outputs(self):
         """What the program writes, an attachment of the film each."""
-        return ("out_color", "out_rays", "out_dropped") if self._counts else ("out_color",)
+        counters = ("out_rays", "out_dropped") if self._counts else ()
+        guide = ("out_guide",) if self.settings.outlines else ()  # the last: of one sample only, it is not summed up
+        return ("out_color", *counters, *guide)
 
-    def start(self, width, height, camera=None, border=None):
-        """Begin a picture of `width` x `height` pixels, or the part `border` (x, y, width, height) of it."""
+    def start(self, width, height, camera=None, border=None, pixel_size=1.0):
+        """Begin a picture of `width` x `height` pixels, or the part `border` (x, y, width, height) of it. `pixel_size`:
+        of a coarse picture, how many pixels of the screen one is wide; lines are as wide there as in the fine one."""
         if self._packed is None:
             raise SceneError("no scene is loaded")
         _check_size(width, height, border, self.device.max_texture_size - self.settings.corner_rays)
@@ -106,6 +152,9 @@ class Session:
             corner_rays=self.settings.corner_rays,
             attachments=len(self._outputs),
         )
+        self._pixel_size = pixel_size
+        if self._outlines:
+            self._outlines.start(self._film.width, self._film.height)
         self._reported_drops = False
         if not self._drawn:  # drivers leave much of their work to the first draw: make it a small one
             with timed(self._seconds, "compile"):
@@ -122,6 +171,8 @@ class Session:
                 self._draw(tile.rectangle, tile.sample)
                 self.device.read(film.target, 0, (0, 0, 1, 1))  # waits for the GPU
                 film.advance(tile, time.perf_counter() - started)
+                if film.sample != tile.sample or film.finished:
+                    self._draw_lines(tile.sample)
                 if time.perf_counter() > deadline:
                     break
         if not self._seconds["first_picture"] and (film.sample > 0 or film.finished):
@@ -142,6 +193,8 @@ class Session:
     def pixels(self):
         """The picture so far, see `Film.pixels`."""
         pixels = self._film.pixels()
+        if self._outlines:
+            pixels = outlines.over(self._film.of_pixels(self._outlines.pixels()), pixels)
         if self._film.unended and _UNENDED not in self.warnings:
             self.warnings.append(_UNENDED)
         return pixels
@@ -181,12 +234,16 @@ class Session:
     def free(self):
         """Give back textures and film; programs stay with the device."""
         self._release_textures()
-        if self._film:
-            self._film.release()
-        self._film = self._packed = None
+        for thing in (self._film, self._outlines):
+            if thing:
+                thing.release()
+        self._film = self._outlines = self._packed = None
 
     def _film_bytes(self):
-        return self._film.width * self._film.height * 16 * len(self._outputs) if self._film else 0
+        if not self._film:
+            return 0
+        own = self._film.width * self._film.height * 16 * len(self._outputs)
+        return own + (self._outlines.bytes if self._outlines else 0)
 
     def _release_textures(self):
         for texture in self._textures.values():
@@ -211,6 +268,13 @@ class Session:
         self.device.read(scratch, 0, (0, 0, 1, 1))
         self.device.release(scratch)
 
+    def _draw_lines(self, sample):
+        """A sample is complete: draw its lines, and make room for what the rays of the next one meet."""
+        if self._outlines:
+            target, guide = self._film.target, len(self._outputs) - 1
+            self._outlines.add_sample(self.device.attachment(target, guide), self._frame_record(sample))
+            self.device.clear(target, guide)
+
     def _draw(self, rectangle, sample, target=None):
         uniforms = self._frame_record(sample)
         self.device.draw(self._program, target or self._film.target, rectangle, self._textures, uniforms)
@@ -220,23 +284,51 @@ class Session:
         camera = self.camera
         matrix = np.asarray(camera.matrix, np.float64)
         record = layout.FRAME.zeros(1)
-        values = self._packed.frame | {
-            "camera_origin": matrix[:3, 3] - self._packed.origin,
-            "camera_right": matrix[:3, 0],
-            "camera_up": matrix[:3, 1],
-            "camera_forward": -matrix[:3, 2],
-            "orthographic": camera.orthographic,
-            "clip_start": camera.clip[0],
-            "clip_end": camera.clip[1],
-            "raster": self._film.raster(sample, camera.window),
-            "sample": sample if self.settings.samples > 1 else -1,
-            "max_depth": self.settings.max_depth,
-            "weight_cutoff": self.settings.weight_cutoff,
-            "film_transparent": self.settings.film_transparent,
-        }
+        world = self._world_light.frame if self._world_light else {}
+        values = (
+            self._packed.frame
+            | world
+            | {
+                "camera_origin": matrix[:3, 3] - self._packed.origin,
+                "camera_right": matrix[:3, 0],
+                "camera_up": matrix[:3, 1],
+                "camera_forward": -matrix[:3, 2],
+                "orthographic": camera.orthographic,
+                "clip_start": camera.clip[0],
+                "clip_end": camera.clip[1],
+                "raster": self._film.raster(sample, camera.window),
+                "window": _window(camera.window),
+                "world_origin": self._packed.origin,
+                "sample": sample if self.settings.samples > 1 else -1,
+                "max_depth": self.settings.max_depth,
+                "shadows_pass": self._packed.shadows_pass[bool(self.settings.tinted_shadows)],
+                "weight_cutoff": self.settings.weight_cutoff,
+                "ao_distance": self.settings.ao_distance or 1e30,
+                "ao_factor": self.settings.ao_factor,
+                "ao_rays": self.settings.ao_rays,
+                "film_transparent": self.settings.film_transparent,
+            }
+            | self._film_options(camera)
+        )
         for name, value in values.items():
             record[name] = value
         return record.view(np.float32)
+
+    def _film_options(self, camera):
+        """Members of the record `Frame` for depth cue and outlines, where they are on."""
+        values = {}
+        if self.settings.depth_cue:
+            values |= depth_cue.frame_values(self.settings.depth_cue, camera, self._packed.bounds, self._packed.origin)
+        if self.settings.outlines:
+            height = self._film.frame_size[1]
+            values |= outlines.frame_values(self.settings.outlines, camera.window, height, self._pixel_size)
+        return values
+
+
+def _window(window):
+    """Left and bottom edge of a camera's window, and 1 over its width and height: (4,)."""
+    left, right, bottom, top = window
+    return left, bottom, 1.0 / (right - left), 1.0 / (top - bottom)
 
 
 def _check_size(width, height, border, limit):

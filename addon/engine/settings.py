@@ -2,7 +2,14 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from .errors import SceneError
+from .film_options import DepthCue, Outlines
+
+WORLD_LIGHTS = ("SAMPLED", "HEMISPHERE", "NONE")
+#: Rays of ambient occlusion in a picture of one sample.
+AO_RAYS = 16
 
 
 @dataclass(frozen=True)
@@ -16,7 +23,12 @@ class Settings:
     paper. `film_transparent`: alpha 0 where the eye sees the sky. `count_rays`: compile the variant of the shader
     that counts. `corner_rays`: rays through the corners of the pixels, four averaged, one row and column more than
     pixels. `stack_limit`: the most rays that wait at a time; with more needed, what is dropped is counted and
-    reported.
+    reported. `flat_colors`: surfaces have their diffuse colour wherever light comes from. `depth_cue`, `outlines`: None
+    for none.
+
+    `world_light`, of worlds that light: SAMPLED by shadow rays, at one sample as HEMISPHERE, which is smooth and has no
+    shadows, or NONE. `use_ao`: what is within `ao_distance` (0: however far) takes the share `ao_factor` of the
+    hemisphere's light away.
     """
 
     samples: int = 1
@@ -27,6 +39,13 @@ class Settings:
     count_rays: bool = False
     corner_rays: bool = False
     stack_limit: int = 32
+    flat_colors: bool = False
+    depth_cue: DepthCue | None = None
+    outlines: Outlines | None = None
+    world_light: str = "SAMPLED"
+    use_ao: bool = False
+    ao_distance: float = 1.0
+    ao_factor: float = 1.0
 
     def __post_init__(self):
         for name, lowest, highest in (
@@ -38,11 +57,27 @@ class Settings:
                 raise SceneError(f"{name} is {getattr(self, name)}; it must lie between {lowest} and {highest}")
         if not 0.0 <= self.weight_cutoff < 1.0:
             raise SceneError(f"weight_cutoff is {self.weight_cutoff}; it must be at least 0 and less than 1")
+        if self.world_light not in WORLD_LIGHTS:
+            raise SceneError(f"world_light is {self.world_light!r}; it must be one of {', '.join(WORLD_LIGHTS)}")
+        if not (np.isfinite(self.ao_distance) and self.ao_distance >= 0.0):
+            raise SceneError(f"ao_distance is {self.ao_distance}; it must be finite and not negative")
+        if not 0.0 <= self.ao_factor <= 1.0:
+            raise SceneError(f"ao_factor is {self.ao_factor}; it must lie between 0 and 1")
 
     @classmethod
     def strict(cls):
         """The rules of the Standard Procedural Databases, under which ray counts are published."""
         return cls(max_depth=5, weight_cutoff=0.0, corner_rays=True, count_rays=True)
+
+    @property
+    def samples_world(self):
+        """Whether the world lights by shadow rays."""
+        return self.world_light == "SAMPLED" and self.samples > 1
+
+    @property
+    def ao_rays(self):
+        """Rays at a lit surface that ask for what hides the world: few of many samples, so many that one is smooth."""
+        return 1 if self.samples > 1 else AO_RAYS
 
     @property
     def stack_size(self):
@@ -52,3 +87,15 @@ class Settings:
     @property
     def may_drop(self):
         return self.stack_size < self.max_depth - 1
+
+    @property
+    def film_features(self):
+        """Features of the shaders that flat colours, depth cue and outlines need."""
+        features = {"HAS_GUIDE"} if self.depth_cue or self.outlines else set()
+        if self.flat_colors:
+            features.add("FLAT_COLORS")
+        if self.depth_cue:
+            features.add("HAS_DEPTH_CUE")
+        if self.outlines:
+            features |= {"HAS_OUTLINES", self.outlines.feature}
+        return features

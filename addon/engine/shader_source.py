@@ -26,8 +26,15 @@ FEATURES = frozenset(
     [f"HAS_{kind.upper()}" for kind in layout.KINDS if kind != "instance"]
     + [
         "HAS_INSTANCES",
-        "HAS_IMAGES",
-        "HAS_WORLD_IMAGE",
+        "HAS_PROGRAMS",
+        "VORONOI_LOOKUP3",
+        "HAS_GRADIENTS",
+        "HAS_LIGHT_PATH",
+        "HAS_COAT",
+        "HAS_TRANSLUCENT",
+        "HAS_DIFFUSE_ROUGHNESS",
+        "HAS_NORMALS",
+        "HAS_HOLDOUT_SHARE",
         "HAS_ABSORPTION",
         "HAS_ATTRIBUTES",
         "HAS_VISIBILITY",
@@ -35,13 +42,42 @@ FEATURES = frozenset(
         "HAS_SHADOW_CATCHER",
         "HAS_CULLING",
         "HAS_LIGHT_SHAPES",
+        "HAS_SEEN_LAMPS",
+        "HAS_LIGHT_TREE",
+        "HAS_LIGHT_VISIBILITY",
+        "HAS_LIGHT_LINKING",
+        "HAS_EMITTERS",
+        "HAS_VARYING_EMITTERS",
+        "HAS_WORLD_LIGHT",
+        "HAS_WORLD_GLOSS",
+        "HAS_HEMISPHERE_LIGHT",
+        "HAS_AMBIENT_OCCLUSION",
         "HAS_ROUGHNESS",
         "HAS_METALS",
         "TINTED_SHADOWS",
         "CULLED_SHADOWS",
         "COUNT_RAYS",
+        "FLAT_COLORS",
+        "HAS_GUIDE",
+        "HAS_DEPTH_CUE",
+        "HAS_OUTLINES",
+        "OUTLINE_SHAPES",
+        "OUTLINE_ATTRIBUTES",
     ]
 )
+
+#: Features that others need.
+NEEDS = {
+    "HAS_AMBIENT_OCCLUSION": {"HAS_HEMISPHERE_LIGHT"},
+    "HAS_DEPTH_CUE": {"HAS_GUIDE"},
+    "HAS_EMITTERS": {"HAS_LIGHT_SHAPES"},
+    "HAS_SEEN_LAMPS": {"HAS_LIGHT_SHAPES"},
+    "HAS_LIGHT_TREE": {"HAS_LIGHT_SHAPES"},
+    "HAS_OUTLINES": {"HAS_GUIDE"},
+    "HAS_WORLD_GLOSS": {"HAS_WORLD_LIGHT", "HAS_ROUGHNESS"},
+    "OUTLINE_ATTRIBUTES": {"HAS_ATTRIBUTES", "HAS_OUTLINES", "HAS_GUIDE"},
+    "OUTLINE_SHAPES": {"HAS_OUTLINES", "HAS_GUIDE"},
+}
 
 _DIRECTIVE = re.compile(r"\s*#\s*(include|ifdef|ifndef|else|endif)\b\s*(.*?)\s*(?:/\*.*)?$")
 
@@ -82,23 +118,33 @@ class ProgramSource:
 
 
 def program(
-    entry, features=(), constants=None, outputs=("out_color",), folders=(SHADER_FOLDER,), records=layout.RECORDS
+    entry,
+    features=(),
+    constants=None,
+    outputs=("out_color",),
+    folders=(SHADER_FOLDER,),
+    records=layout.RECORDS,
+    generated=(),
+    images=(),
 ):
     """Assemble the program whose main() is in the file `entry`.
 
     `features`: names out of FEATURES that hold. `constants`: name to number, defined at the top. `folders`: where files
-    are looked for, in this order. `records`: what can be included by name. Raises ShaderSourceError.
+    are looked for, in this order. `records`: what can be included by name. `generated`: (name, text) of files that are
+    in no folder. `images`: textures that are read by pixel, from the sampler `<image>_data`. Raises ShaderSourceError.
     """
-    constants = tuple(sorted((constants or {}).items()))
-    return _program(entry, frozenset(features), constants, tuple(outputs), tuple(map(Path, folders)), tuple(records))
+    constants, folders = tuple(sorted((constants or {}).items())), tuple(map(Path, folders))
+    return _program(
+        entry, frozenset(features), constants, tuple(outputs), folders, tuple(records), tuple(generated), tuple(images)
+    )
 
 
 @cache
-def _program(entry, features, constants, outputs, folders, records):
+def _program(entry, features, constants, outputs, folders, records, generated, images):
     unknown = features - FEATURES
     if unknown:
         raise ShaderSourceError(f"unknown feature {sorted(unknown)[0]}")
-    composer = _Composer(folders, features, records)
+    composer = _Composer(folders, features, records, dict(generated))
     for name, value in constants:
         composer.emit(f"#define {name} {value}", "<constants>", 1)
     for number, line in enumerate((record_glsl.constants() + record_glsl.uniforms()).splitlines(), 1):
@@ -107,7 +153,7 @@ def _program(entry, features, constants, outputs, folders, records):
     return ProgramSource(
         name=entry,
         fragment="\n".join(composer.text) + "\n",
-        textures=tuple(composer.textures),
+        textures=(*images, *composer.textures),
         uniform_struct=record_glsl.uniform_struct(),
         outputs=outputs,
         lines=tuple(composer.lines),
@@ -117,8 +163,8 @@ def _program(entry, features, constants, outputs, folders, records):
 class _Composer:
     """Text, origin of each line and textures of a program while its files are read."""
 
-    def __init__(self, folders, features, records):
-        self.folders, self.features = folders, features
+    def __init__(self, folders, features, records, generated):
+        self.folders, self.features, self.generated = folders, features, generated
         self.records = {record.name: record for record in records}
         self.text, self.lines, self.textures = [], [], []
         self._included = set()
@@ -132,14 +178,19 @@ class _Composer:
         if name in self._included:
             return
         self._included.add(name)
-        path = next((folder / name for folder in self.folders if (folder / name).is_file()), None)
-        if path is None:
-            raise ShaderSourceError(f"{included_from}no shader file {name}")
         active = [True]
-        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        for number, line in enumerate(self._text(name, included_from).splitlines(), 1):
             self._line(line, name, number, active)
         if len(active) != 1:
             raise ShaderSourceError(f"{name}: an #ifdef is not closed")
+
+    def _text(self, name, included_from):
+        if name in self.generated:
+            return self.generated[name]
+        path = next((folder / name for folder in self.folders if (folder / name).is_file()), None)
+        if path is None:
+            raise ShaderSourceError(f"{included_from}no shader file {name}")
+        return path.read_text(encoding="utf-8")
 
     def _line(self, line, file, number, active):
         match = _DIRECTIVE.match(line)

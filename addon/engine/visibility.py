@@ -1,10 +1,16 @@
-"""Which rays see a thing, and how."""
+"""Which rays see a thing, and how; which lights light it."""
 
 from enum import IntFlag
 
+_FIRST_GROUP = 7
+
+#: Groups of objects that lights can be linked to: as many bits as float32 holds beside the others.
+GROUPS = 24 - _FIRST_GROUP
+
 
 class Visibility(IntFlag):
-    """Which rays see a thing, and how it is seen: the sum of these. The shader knows the same numbers."""
+    """Which rays see a thing, and how it is seen: the sum of these, and of the groups that it is in. The shader knows
+    the same numbers."""
 
     CAMERA = 1
     DIFFUSE = 2
@@ -14,3 +20,10 @@ class Visibility(IntFlag):
     ALL = 31
     HOLDOUT = 32  # a hole in the picture, for the camera
     SHADOW_CATCHER = 64  # only the shadows on it, for the camera
+
+    @classmethod
+    def group(cls, number):
+        """Group `number` of things that a light alone lights, or that alone cast a light's shadows; below GROUPS."""
+        if not 0 <= number < GROUPS:
+            raise ValueError(f"there are {GROUPS} groups, no number {number}")
+        return cls(1 << (_FIRST_GROUP + number))

@@ -8,13 +8,17 @@ import bpy
 import numpy as np
 
 from ..sync.compat import node_tree
-from ..sync.lobes import ior_of_reflectance, normal_reflectance, phong_of, sharpness
 
-#: A highlight whose lobe would mirror more than this part of Ks by itself is smaller than a pixel: it is left out.
-_MOST_MIRRORED = 0.5
-#: Reflectance at normal incidence up to which a dielectric stands for a highlight.
-_MOST_REFLECTANCE = 0.9
+#: Index of the coats that stand for highlights, the largest there is: Phong's highlight is the same at all angles,
+#: and the reflectance of this grows the least towards the edge.
+_COAT_IOR = 4.0
+_COAT_REFLECTANCE = ((_COAT_IOR - 1.0) / (_COAT_IOR + 1.0)) ** 2
+#: Reflectance at normal incidence up to which a coat stands for a highlight: a wide one stays dimmer than Phong's,
+#: which takes nothing of what lies below.
+_MOST_REFLECTANCE = 0.2
 _STEP = 300.0  # between nodes
+#: The node of what is diffuse; its first input is the color.
+_BODY = "Body"
 
 
 class Materials:
@@ -45,8 +49,7 @@ class Materials:
         made.name = name
         _set_viewport_color(made, material)
         if not black:
-            body = next(node for node in made.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
-            body.inputs["Base Color"].default_value = _base_color(material, _Highlight.of(material))
+            made.node_tree.nodes[_BODY].inputs[0].default_value = _base_color(material, _Highlight.of(material))
         return made
 
 
@@ -95,21 +98,25 @@ def _set_viewport_color(made, material):
 
 
 def _base_color(material, highlight):
-    """The colour of the body under its highlight, which takes some of the light."""
-    return (*np.divide(material.diffuse, 1.0 - highlight.taken), 1.0)
+    return (*_under(material.diffuse, highlight), 1.0)
+
+
+def _under(share, highlight):
+    """A share (3,) of what lies under the highlight, which takes some of the light, so that it is right from above."""
+    return np.divide(share, 1.0 - highlight.reflectance)
 
 
 def _shaders(tree, material):
     """A node for each share of the material, one at least."""
     highlight = _Highlight.of(material)
-    mirror = np.maximum(np.subtract(material.reflect, highlight.mirror), 0.0)
+    mirror, through = _under(material.reflect, highlight), _under(material.transmit, highlight)
     shaders = []
-    if any(material.diffuse) or highlight.reflectance or not (any(mirror) or any(material.transmit)):
-        shaders.append(_principled(tree, _base_color(material, highlight), highlight))
+    if any(material.diffuse) or highlight.reflectance or not any(material.transmit):
+        shaders.append(_body(tree, _base_color(material, highlight), highlight))
     if any(mirror):
         shaders.append(new_node(tree, "BsdfAnisotropic", 3, -1, Color=(*mirror, 1.0), Roughness=0.0))
     if any(material.transmit):
-        color = (*material.transmit, 1.0)
+        color = (*through, 1.0)
         if material.ior == 1.0:
             shaders.append(new_node(tree, "BsdfTransparent", 3, -2, Color=color))
         else:
@@ -117,43 +124,33 @@ def _shaders(tree, material):
     return shaders
 
 
-def _principled(tree, base, highlight):
-    node = new_node(tree, "BsdfPrincipled", 3, 0, Base_Color=base, Roughness=highlight.roughness)
+def _body(tree, color, highlight):
+    """What is diffuse, with the highlight as its coat."""
     if highlight.reflectance:
-        node.inputs["IOR"].default_value = ior_of_reflectance(highlight.reflectance)
+        node = new_node(tree, "BsdfPrincipled", 3, 0, Base_Color=color, Roughness=0.0, Specular_IOR_Level=0.0)
+        node.inputs["Coat Weight"].default_value = highlight.reflectance / _COAT_REFLECTANCE
+        node.inputs["Coat IOR"].default_value = _COAT_IOR
+        node.inputs["Coat Roughness"].default_value = highlight.roughness
     else:
-        node.inputs["Specular IOR Level"].default_value = 0.0
+        node = new_node(tree, "BsdfDiffuse", 3, 0, Color=color)
+    node.name = _BODY
     return node
 
 
 @dataclass(frozen=True)
 class _Highlight:
-    """The rough dielectric surface whose highlight of the lights is Phong's: its `roughness` and its reflectance at
-    normal incidence, 0 for no highlight."""
+    """The rough mirror whose highlights of the lights are Phong's: its `roughness`, and its reflectance at normal
+    incidence, 0 for no highlight."""
 
     roughness: float = 0.5
     reflectance: float = 0.0
 
     @classmethod
     def of(cls, material):
-        """Of a Material's highlight and shine: the inverse of what the sync makes of a Principled BSDF."""
-        weight = max(material.highlight)
-        # Exponent n / 4 of a microfacet lobe of width alpha with n = 2 / alpha^2 - 2: see `phong_of`.
-        roughness = (1.0 / (2.0 * max(material.shine, 1.0) + 1.0)) ** 0.25
-        peak = (1.0 - sharpness(roughness)) * phong_of(roughness)[0]
-        if not weight > 0.0 or not peak > 0.0:
-            return cls()
-        made = cls(roughness, min(weight / peak, _MOST_REFLECTANCE))
-        return made if made.mirror <= _MOST_MIRRORED * max(material.reflect) else cls()
-
-    @property
-    def mirror(self):
-        """What the surface reflects as a mirror."""
-        return self.reflectance * sharpness(self.roughness)
-
-    @property
-    def taken(self):
-        """What it takes of the light of the body under it, once for its blurred and once for its sharp part."""
-        reflectance = normal_reflectance(ior_of_reflectance(self.reflectance))
-        blurred = (1.0 - sharpness(self.roughness)) * reflectance
-        return 1.0 - (1.0 - blurred) * (1.0 - self.mirror)
+        """Of a Material's highlight and shine: as high in the middle, and half as high where that is. Phong's is so
+        where the direction is off by arccos h, the half vector by half of that. The peak of GGX is 1 / (4 alpha^2) in
+        units of a white diffuse surface."""
+        h = 0.5 ** (1.0 / max(material.shine, 1.0))
+        alpha_squared = (1.0 - h) / (2.0 * np.sqrt(2.0) - 1.0 - h)
+        reflectance = 4.0 * alpha_squared * max(material.highlight)
+        return cls(alpha_squared**0.25, min(reflectance, _MOST_REFLECTANCE))

@@ -72,10 +72,12 @@ def new_light(name, light, box, fades):
 
 
 def new_world(name, world):
-    """A world of one colour."""
+    """A world of one colour that lights nothing, as in NFF."""
     made = bpy.data.worlds.new(name)
     tree, output = new_tree(made)
     background = new_node(tree, "Background", 1, Color=(*world.color, 1.0))
     tree.links.new(background.outputs[0], output.inputs["Surface"])
     made.color = world.color
+    if hasattr(made, "cycles_visibility"):
+        made.cycles_visibility.diffuse = False
     return made

@@ -90,12 +90,10 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
   if (frame_root_count < 0.5 || (any_hit && hit.kind >= 0)) {
     return hit;
   }
-#ifdef HAS_SHADOW_CATCHER
 #ifndef HAS_INSTANCES
-  if (world_ray.kind == RAY_SHADOW_OF_CATCHERS) { /* only instances and planes are catchers */
+  if (world_ray.kind > VISIBILITY_ALL) { /* only instances and planes are catchers or in groups */
     return hit;
   }
-#endif
 #endif
   Ray ray = world_ray;
   Slabs slabs = bvh_slabs(ray);
@@ -238,8 +236,16 @@ Surface bvh_placed_surface(Surface surface, Instance instance, InstanceSurface p
   surface.lift = vec3(dot(placed.to_world_x.xyz, surface.lift), dot(placed.to_world_y.xyz, surface.lift),
                       dot(placed.to_world_z.xyz, surface.lift));
 #endif
+#ifdef HAS_GRADIENTS
+  surface.gradient_u = bvh_world_normal(instance, surface.gradient_u);
+  surface.gradient_v = bvh_world_normal(instance, surface.gradient_v);
+#endif
 #ifdef HAS_ATTRIBUTES
   surface.geometry = instance.geometry;
+#ifdef HAS_GRADIENTS
+  surface.gradient_first = bvh_world_normal(instance, surface.gradient_first);
+  surface.gradient_second = bvh_world_normal(instance, surface.gradient_second);
+#endif
 #endif
   return surface;
 }

@@ -5,6 +5,8 @@
 #include <cone>
 #include <cone_surface>
 
+#define CONE_TIP 1e-6 /* radius, over the largest, below which u turns no faster */
+
 /* Nearest t in (0, t_max), else t_max. Negative radii are hit from within only. */
 float cone_hit(Cone cone, Ray ray, float t_max)
 {
@@ -34,8 +36,18 @@ Surface cone_surface(Cone cone, ConeSurface info, Ray ray, float t)
   Surface surface = ray_make_surface(cone.base + z * axis + (base_radius + slope * z) * radial, normal, normal,
                  uv * info.uv_transform.xy + info.uv_transform.zw, info.material,
                  ray_error(cone.base, height + max(base_radius, apex_radius)));
+#ifdef HAS_GRADIENTS
+  bool is_planar = info.planar > 0.5;
+  float width = 2.0 * max(base_radius, apex_radius);
+  float turn = TWO_PI * max(base_radius + slope * z, CONE_TIP * width);
+  surface.gradient_u = info.uv_transform.x * (is_planar ? info.meridian / width : cross(axis, radial) / turn);
+  surface.gradient_v = info.uv_transform.y * (is_planar ? other / width : axis / height);
+#endif
 #ifdef HAS_ATTRIBUTES
   surface.weights.x = z / height; /* of the apex */
+#ifdef HAS_GRADIENTS
+  surface.gradient_first = axis / height;
+#endif
 #endif
   return surface;
 }

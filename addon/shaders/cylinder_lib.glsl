@@ -23,8 +23,15 @@ Surface cylinder_surface(Cylinder cylinder, CylinderSurface info, Ray ray, float
   Surface surface = ray_make_surface(cylinder.base + z * axis + radius * normal, normal, normal,
                  uv * info.uv_transform.xy + info.uv_transform.zw, info.material,
                  ray_error(cylinder.base, height + radius));
+#ifdef HAS_GRADIENTS
+  surface.gradient_u = info.uv_transform.x / (TWO_PI * radius) * cross(axis, normal);
+  surface.gradient_v = info.uv_transform.y / height * axis;
+#endif
 #ifdef HAS_ATTRIBUTES
   surface.weights.x = z / height; /* of the apex */
+#ifdef HAS_GRADIENTS
+  surface.gradient_first = axis / height;
+#endif
 #endif
   return surface;
 }

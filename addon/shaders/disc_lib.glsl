@@ -21,7 +21,13 @@ Surface disc_surface(Disc disc, DiscSurface info, Ray ray, float t)
 {
   vec3 offset = ray.origin - disc.center + t * ray.direction;
   offset -= dot(offset, disc.normal) * disc.normal;
-  vec2 uv = vec2(dot(offset, info.meridian), dot(offset, cross(disc.normal, info.meridian))) / (2.0 * disc.radius) + 0.5;
-  return ray_make_surface(disc.center + offset, disc.normal, disc.normal, uv * info.uv_transform.xy + info.uv_transform.zw,
+  vec3 other = cross(disc.normal, info.meridian);
+  vec2 uv = vec2(dot(offset, info.meridian), dot(offset, other)) / (2.0 * disc.radius) + 0.5;
+  Surface surface = ray_make_surface(disc.center + offset, disc.normal, disc.normal, uv * info.uv_transform.xy + info.uv_transform.zw,
                  info.material, ray_flat_error(disc.normal, max(abs(disc.center), abs(disc.center + offset))));
+#ifdef HAS_GRADIENTS
+  surface.gradient_u = info.uv_transform.x / (2.0 * disc.radius) * info.meridian;
+  surface.gradient_v = info.uv_transform.y / (2.0 * disc.radius) * other;
+#endif
+  return surface;
 }

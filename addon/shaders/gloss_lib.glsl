@@ -1,4 +1,5 @@
-/* Materials whose mirror or transmission is rough: what they send on of the light of lamps, and rays out of their lobes. */
+/* Materials whose mirror, coat or transmission is rough: what they send on of the light of lamps, and rays out of their
+ * lobes. */
 #include "material_lib.glsl"
 #include "microfacet_lib.glsl"
 
@@ -7,7 +8,20 @@
 
 bool gloss_mirror_is_rough(Material material)
 {
-  return material.roughness > GLOSS_SMOOTH && optics_largest(material.reflect + material.grazing) > 0.0;
+  vec3 share = material.reflect;
+#ifdef HAS_METALS
+  share += material.metallic + material.grazing;
+#endif
+  return material.roughness > GLOSS_SMOOTH && optics_largest(share) > 0.0;
+}
+
+bool gloss_coat_is_rough(Material material)
+{
+#ifdef HAS_COAT
+  return material.coat_roughness > GLOSS_SMOOTH && optics_largest(material.coat) > 0.0;
+#else
+  return false;
+#endif
 }
 
 /* Where the index does not change facets bend nothing. */
@@ -19,56 +33,141 @@ bool gloss_transmission_is_rough(Material material, float eta)
 /* Let the rough facets of a mirror or metal give back what they reflect to each other. */
 void gloss_give_back(inout Material material, float cosine)
 {
-  if (material.multiscatter > 0.5 && material.fresnel < 0.5 && gloss_mirror_is_rough(material)) {
-    vec3 mean = material.reflect;
+  if (material.multiscatter > 0.5 && gloss_mirror_is_rough(material)) {
+    float alpha = material.roughness * material.roughness;
+    if (material.fresnel < 0.5) {
+      material.reflect *= microfacet_given_back(material.reflect, cosine, alpha);
+    }
 #ifdef HAS_METALS
-    mean = optics_metal_mean(material.reflect, material.grazing, material.edge);
-#endif
-    vec3 factor = microfacet_given_back(mean, cosine, material.roughness * material.roughness);
-    material.reflect *= factor;
+    vec3 mean = optics_metal_mean(material.metallic, material.grazing, material.edge);
+    vec3 factor = microfacet_given_back(mean, cosine, alpha);
+    material.metallic *= factor;
     material.grazing *= factor;
+#endif
   }
+}
+
+#ifdef HAS_COAT
+/* The share that the coat mirrors. */
+vec3 gloss_coat(Material material, float cosine)
+{
+  float cos_t;
+  return material.coat * optics_fresnel(cosine, 1.0 / material.coat_ior, cos_t);
+}
+
+/* Take off all that lies below the coat what that mirrors and absorbs (as Cycles). */
+void gloss_lay_coat(inout Material material, float cosine)
+{
+  float mean = cosine;
+  if (gloss_coat_is_rough(material)) {
+    mean = microfacet_mean_cosine(cosine, material.coat_roughness * material.coat_roughness);
+  }
+  float cos_t;
+  float weight = optics_largest(material.coat);
+  float mirrored = weight * optics_fresnel(mean, 1.0 / material.coat_ior, cos_t);
+  vec3 left = (1.0 - mirrored) * mix(vec3(1.0), pow(material.coat_tint, vec3(1.0 / max(cos_t, 1e-3))), weight);
+  material.diffuse *= left;
+  material.reflect *= left;
+  material.transmit *= left;
+  material.glow *= left;
+  material.highlight *= left;
+#ifdef HAS_METALS
+  material.metallic *= left;
+  material.grazing *= left;
+#endif
+#ifdef HAS_TRANSLUCENT
+  material.translucent *= left;
+#endif
+}
+#endif
+
+/* Density of the rays of a lobe in a direction of whose light it sends on `share`, but for Fresnel's; times 2 pi. */
+float gloss_density(float share, float cos_view, float cos_other, float alpha)
+{
+  return 2.0 * share / microfacet_weight(cos_view, cos_other, alpha);
+}
+
+/* Whether rays go on in a denser body, where they reach no light straight away: directions chosen for lights are of no use. */
+bool gloss_enters(float eta)
+{
+  return eta < 1.0;
 }
 
 /* What is sent to `view` of the light that comes from `light`, which may lie on the other side of the surface, as a share of
- * what a white diffuse surface facing it returns. `eta` is the index before the surface over the one beyond. */
-vec3 gloss_lit(Material material, float eta, vec3 normal, vec3 view, vec3 light)
+ * what a white diffuse surface facing it returns. `eta` is the index before the surface over the one beyond. Directions towards
+ * the light are chosen as densely as `asked`; rays out of the lobes, of which the coat takes the part `of_coat`, find it too. */
+vec3 gloss_lit(Material material, float eta, vec3 normal, vec3 view, vec3 light, float of_coat, float asked)
 {
   vec3 facet;
   float cos_t;
-  if (dot(normal, light) > 0.0) {
-    if (!gloss_mirror_is_rough(material)) {
-      return vec3(0.0);
+  float cos_view = dot(normal, view);
+  float cos_light = dot(normal, light);
+  vec3 returned = vec3(0.0);
+  if (cos_light > 0.0) {
+    if (gloss_mirror_is_rough(material)) {
+      float alpha = material.roughness * material.roughness;
+      float share = microfacet_mirrored(normal, view, light, alpha, facet);
+      float cosine = min(dot(view, facet), 1.0);
+      float fresnel = optics_fresnel(cosine, material_mirror_eta(material, eta), cos_t);
+      float drawn = (1.0 - of_coat) * gloss_density(share, cos_view, cos_light, alpha);
+      returned += sampling_weight(asked, drawn) * share * material_mirror(material, cosine, fresnel);
     }
-    float share = microfacet_mirrored(normal, view, light, material.roughness * material.roughness, facet);
-    float cosine = min(dot(view, facet), 1.0);
-    return share * material_mirror(material, cosine, optics_fresnel(cosine, eta, cos_t));
+#ifdef HAS_COAT
+    if (gloss_coat_is_rough(material)) {
+      float alpha = material.coat_roughness * material.coat_roughness;
+      float share = microfacet_mirrored(normal, view, light, alpha, facet);
+      float drawn = of_coat * gloss_density(share, cos_view, cos_light, alpha);
+      returned += sampling_weight(asked, drawn) * share * gloss_coat(material, min(dot(view, facet), 1.0));
+    }
+#endif
+    return returned;
   }
-  if (!gloss_transmission_is_rough(material, eta)) {
-    return vec3(0.0);
+  if (gloss_transmission_is_rough(material, eta)) {
+    float alpha = material.transmit_roughness * material.transmit_roughness;
+    float share = microfacet_refracted(normal, view, light, alpha, eta, facet);
+    float fresnel = optics_fresnel(clamp(dot(view, facet), 0.0, 1.0), eta, cos_t);
+    float drawn = gloss_density(share, cos_view, cos_light, alpha);
+    float weight = gloss_enters(eta) && asked < SAMPLING_ALWAYS ? 0.0 : sampling_weight(asked, drawn);
+    returned = weight * share * material_through(material, fresnel);
   }
-  float alpha = material.transmit_roughness * material.transmit_roughness;
-  float share = microfacet_refracted(normal, view, light, alpha, eta, facet);
-  float fresnel = optics_fresnel(clamp(dot(view, facet), 0.0, 1.0), eta, cos_t);
-  return share * material_through(material, fresnel);
+  return returned;
 }
 
-/* A direction into which the rough mirror reflects; `share` is its weight, 0 where it ends in the surface. */
-vec3 gloss_mirrored(Material material, float eta, vec3 normal, vec3 incoming, vec2 u, out vec3 share)
+/* A direction into which the rough mirrors reflect; `share` is its weight, 0 where it ends in the surface, `density` that of
+ * the directions there, times 2 pi. Of two mirrors one is drawn, the coat with the probability `of_coat`. */
+vec3 gloss_mirrored(Material material, float eta, vec3 normal, vec3 incoming, vec2 u, float of_coat, out vec3 share,
+                    out float density)
 {
-  float alpha = material.roughness * material.roughness;
+  float roughness = material.roughness;
+  float part = 1.0;
+#ifdef HAS_COAT
+  bool coated = u.x < of_coat;
+  u.x = coated ? u.x / of_coat : (u.x - of_coat) / (1.0 - of_coat);
+  roughness = coated ? material.coat_roughness : roughness;
+  part = coated ? of_coat : 1.0 - of_coat;
+#endif
+  float alpha = roughness > GLOSS_SMOOTH ? roughness * roughness : 0.0;
   vec3 facet = microfacet_sample(normal, -incoming, alpha, u);
   float cosine = clamp(-dot(facet, incoming), 0.0, 1.0);
   vec3 mirrored = optics_mirror(incoming, facet);
+  float cos_view = -dot(normal, incoming);
   float cos_out = dot(normal, mirrored);
   float cos_t;
-  share = material_mirror(material, cosine, optics_fresnel(cosine, eta, cos_t));
-  share *= cos_out > 0.0 ? microfacet_weight(dot(normal, incoming), cos_out, alpha) : 0.0;
+  share = material_mirror(material, cosine, optics_fresnel(cosine, material_mirror_eta(material, eta), cos_t));
+#ifdef HAS_COAT
+  share = coated ? gloss_coat(material, cosine) : share;
+#endif
+  share *= cos_out > 0.0 ? microfacet_weight(cos_view, cos_out, alpha) / part : 0.0;
+  density = SAMPLING_CERTAIN;
+  if (alpha > 0.0) {
+    float returned = microfacet_mirrored(normal, -incoming, mirrored, alpha, facet);
+    density = part * gloss_density(returned, cos_view, cos_out, alpha);
+  }
   return mirrored;
 }
 
 /* The same of rough transmission. What a facet reflects totally is its mirror's. */
-vec3 gloss_refracted(Material material, float eta, vec3 normal, vec3 incoming, vec2 u, out vec3 share)
+vec3 gloss_refracted(Material material, float eta, vec3 normal, vec3 incoming, vec2 u, out vec3 share, out float density)
 {
   float alpha = material.transmit_roughness * material.transmit_roughness;
   vec3 facet = microfacet_sample(normal, -incoming, alpha, u);
@@ -76,20 +175,36 @@ vec3 gloss_refracted(Material material, float eta, vec3 normal, vec3 incoming, v
   float cos_t;
   share = material_through(material, optics_fresnel(cosine, eta, cos_t));
   vec3 bent = optics_refract(incoming, facet, cosine, cos_t, eta);
+  float cos_view = -dot(normal, incoming);
   float cos_out = dot(normal, bent);
-  share *= cos_t > 0.0 && cos_out < 0.0 ? microfacet_weight(dot(normal, incoming), cos_out, alpha) : 0.0;
+  share *= cos_t > 0.0 && cos_out < 0.0 ? microfacet_weight(cos_view, cos_out, alpha) : 0.0;
+  density = SAMPLING_CERTAIN;
+  if (!gloss_enters(eta)) {
+    density = gloss_density(microfacet_refracted(normal, -incoming, bent, alpha, eta, facet), cos_view, cos_out, alpha);
+  }
   return bent;
 }
 
-/* What a rough mirror is drawn as where a pixel has one sample and shall have no noise: the rougher, the less of it as a
- * sharp mirror. Of a metal some becomes diffuse in place of what it would mirror of other things than lamps; the rest is
- * left to the lamps' highlights. */
-void gloss_draw_sharp(inout Material material, inout vec3 mirror, inout vec3 diffuse)
+/* How much of a rough mirror is drawn as a sharp one where a pixel has one sample and shall have no noise. */
+float gloss_sharpness(float roughness)
 {
-  float sharp = 1.0 - smoothstep(0.1, 0.5, material.roughness);
-  float blunt = material.fresnel > 0.5 ? 0.0 : (1.0 - sharp) * material.roughness;
+  return 1.0 - smoothstep(0.1, 0.5, roughness);
+}
+
+/* What a rough mirror is drawn as there: the rougher, the less of it as a sharp mirror. Of a metal some becomes diffuse in
+ * place of what it would mirror of other things than lamps; the rest is left to the lamps' highlights. */
+void gloss_draw_sharp(inout Material material, inout vec3 mirror)
+{
+  float sharp = gloss_sharpness(material.roughness);
+  float blunt = (1.0 - sharp) * material.roughness;
   mirror *= sharp;
-  diffuse += blunt * material.reflect;
-  material.reflect *= 1.0 - blunt;
+  if (material.fresnel < 0.5) {
+    material.diffuse += blunt * material.reflect;
+    material.reflect *= 1.0 - blunt;
+  }
+#ifdef HAS_METALS
+  material.diffuse += blunt * material.metallic;
+  material.metallic *= 1.0 - blunt;
   material.grazing *= 1.0 - blunt;
+#endif
 }

@@ -5,6 +5,9 @@
 #include <light_shape>
 #include "sampling_lib.glsl"
 #endif
+#ifdef HAS_EMITTERS
+#include "emitter_lib.glsl"
+#endif
 
 #define LIGHT_POINT 0
 #define LIGHT_CONSTANT 1
@@ -12,6 +15,12 @@
 #define LIGHT_SPOT 3
 #define LIGHT_RECTANGLE 4
 #define LIGHT_ELLIPSE 5
+#define LIGHT_TRIANGLE 6
+#define LIGHT_ELLIPSOID 7
+#define LIGHT_TUBE 8
+
+/* `light.emitter` of a surface that glows not everywhere the same: its light is what the shadow ray sees at its end. */
+#define EMITTER_VARIES 2
 
 /* What arrives at a point if nothing is in the way, from a light without extent: the radiance that a white diffuse surface
  * facing the light returns, the unit direction towards the light and its distance. */
@@ -29,6 +38,13 @@ vec3 light_at(Light light, vec3 point, out vec3 direction, out float range)
 }
 
 #ifdef HAS_LIGHT_SHAPES
+/* About how densely a light is asked in the direction of a point of it that is `range` away, times 2 pi; `seen_area` says what it
+ * is, and how often it is chosen. Both ways to find it, see `sampling_weight`, take this for the density. */
+float light_density(float range, float seen_area)
+{
+  return min(TWO_PI * range * range / max(seen_area, 1e-30), SAMPLING_ALWAYS);
+}
+
 /* The same of lights with extent: from the middle of a light it is what all of the light gives a surface that faces it (near
  * an area light, a disc of its size); from a point of it, chosen by `u`, its mean over `u` is what the light gives.
  * `light.position` becomes where the light comes from. */
@@ -89,7 +105,13 @@ vec3 light_of_ball(inout Light light, LightShape shape, vec3 point, bool sampled
   return light.kind == LIGHT_SPOT && !inside ? radiance * light_cone(shape, -direction) : radiance;
 }
 
-/* A rectangle or an ellipse that shines to one side. With a spread it is seen through a grid of slats, which hides of it the
+/* The cosine of what leaves a flat light towards a point seen from it, 0 on a side that does not shine. */
+float light_facing(Light light, float cosine)
+{
+  return light.sides == 0 ? abs(cosine) : max(float(light.sides) * cosine, 0.0);
+}
+
+/* A rectangle, an ellipse or a triangle. With a spread it is seen through a grid of slats, which hides of it the
  * more the farther one looks off its axis, all beyond half the spread (as Cycles has it): a place on the light is chosen
  * among what the slats may show, what is within `reach` of the point's foot on the light. */
 vec3 light_of_area(inout Light light, LightShape shape, vec3 point, bool sampled, vec2 u, out vec3 direction, out float range)
@@ -97,6 +119,11 @@ vec3 light_of_area(inout Light light, LightShape shape, vec3 point, bool sampled
   bool round = light.kind == LIGHT_ELLIPSE;
   vec2 size = vec2(length(shape.axis_x), length(shape.axis_y)); /* half sides, semi-axes */
   vec2 place = !sampled ? vec2(0.0) : round ? sampling_disc(u) : 2.0 * u - 1.0;
+#ifdef HAS_EMITTERS
+  if (light.kind == LIGHT_TRIANGLE) {
+    place = u.x + u.y > 1.0 ? 1.0 - u : u;
+  }
+#endif
   float share = 1.0; /* of the light among which was chosen, times what the slats show of it if they are not looked at */
   if (shape.spread > 0.0) {
     vec3 offset = point - light.position;
@@ -117,7 +144,7 @@ vec3 light_of_area(inout Light light, LightShape shape, vec3 point, bool sampled
   vec3 to_light = light.position - point;
   range = length(to_light);
   direction = to_light / max(range, 1e-30);
-  float cosine = max(-dot(direction, shape.axis_z), 0.0);
+  float cosine = light_facing(light, -dot(direction, shape.axis_z));
   float shown = max(1.0 - shape.spread * length(cross(direction, shape.axis_z)) / max(cosine, 1e-30), 0.0);
   float near = sampled ? 0.0 : share * size.x * size.y * (round ? 1.0 : 8.0 / TWO_PI); /* area / pi */
   return light.color * (share * shown * cosine / max(range * range + near, 1e-30));
@@ -139,6 +166,22 @@ vec3 light_shaped_at(inout Light light, int index, vec3 point, bool sampled, vec
   else if (light.kind == LIGHT_CONSTANT) {
     return light_at(light, point, direction, range);
   }
+#ifdef HAS_EMITTERS
+  else if (light.kind >= LIGHT_ELLIPSOID) {
+    vec3 normal;
+    float area = 0.0;
+    if (light.kind == LIGHT_TUBE) {
+      area = emitter_tube(shape, u, light.position, normal);
+    }
+    else {
+      area = emitter_ellipsoid(shape, point, light.sides < 0, u, light.position, normal);
+    }
+    vec3 to_light = light.position - point;
+    range = length(to_light);
+    direction = to_light / max(range, 1e-30);
+    radiance = light.color * (area * light_facing(light, -dot(direction, normal)) / max(range * range, 1e-30));
+  }
+#endif
   else {
     radiance = light_of_area(light, shape, point, sampled, u, direction, range);
   }

@@ -1,57 +1,42 @@
-/* The paper's colour class (3.1.1), each colour a constant, times an image by uv, times an attribute. */
-#include "ray_lib.glsl"
+/* The paper's colour class (3.1.1), where it varies as its program says. */
+#include "point_lib.glsl"
 #include "optics_lib.glsl"
 #include <material>
-#ifdef HAS_IMAGES
-#include "image_lib.glsl"
-#endif
-#ifdef HAS_ATTRIBUTES
-#include "attribute_lib.glsl"
+#ifdef HAS_PROGRAMS
+#include <constant>
+#include "programs_lib.glsl"
 #endif
 
-vec3 material_textured(vec3 color, int image, int number, Surface surface)
+/* The material of a number as it is at a point. */
+Material material_at(int index, Point point)
 {
-#ifdef HAS_IMAGES
-  if (image >= 0) {
-    color *= image_sample(image, surface.uv).rgb;
-  }
+  Material material = read_material(index);
+#ifdef HAS_PROGRAMS
+  programs_run(material.program, int(frame_constant_first) + material.constants, point, material);
 #endif
-#ifdef HAS_ATTRIBUTES
-  if (number >= 0) {
-    color *= attribute_value(number, surface).rgb;
-  }
-#endif
-  return color;
-}
-
-/* The material of a surface with its images and attributes evaluated there. */
-Material material_at(Surface surface)
-{
-  Material material = read_material(surface.material);
-  material.diffuse = material_textured(material.diffuse, material.diffuse_image, material.diffuse_attribute, surface);
-  material.reflect = material_textured(material.reflect, material.reflect_image, material.reflect_attribute, surface);
-  material.transmit = material_textured(material.transmit, material.transmit_image, material.transmit_attribute, surface);
-  material.glow = material_textured(material.glow, material.glow_image, material.glow_attribute, surface);
   return material;
 }
 
-/* The share that is mirrored at a cosine of incidence, where a smooth dielectric has the reflectance `fresnel`. */
+/* The share that is mirrored at a cosine of incidence, where the surface has the reflectance `fresnel`. */
 vec3 material_mirror(Material material, float cosine, float fresnel)
 {
-  if (material.fresnel > 0.5) {
-    return material.reflect * fresnel;
-  }
+  vec3 share = material.reflect * (material.fresnel > 0.5 ? fresnel : 1.0);
 #ifdef HAS_METALS
-  return optics_metal(material.reflect, material.grazing, material.edge, cosine);
-#else
-  return material.reflect;
+  share += optics_metal(material.metallic, material.grazing, material.edge, cosine);
 #endif
+  return share;
 }
 
-/* The share that goes through there. */
+/* The index before the mirror's surface over the one beyond, where `eta` is that of what goes through. */
+float material_mirror_eta(Material material, float eta)
+{
+  return material.fresnel_ior > 0.0 ? 1.0 / material.fresnel_ior : eta;
+}
+
+/* The share that goes through, where the body's surface has the reflectance `fresnel`. */
 vec3 material_through(Material material, float fresnel)
 {
-  return material.transmit * (material.fresnel > 0.5 ? 1.0 - fresnel : 1.0);
+  return material.transmit * (1.0 - fresnel * material.transmit_covered);
 }
 
 /* Leave nothing of a material but what it transmits. */
@@ -61,5 +46,8 @@ void material_hide(inout Material material)
   material.reflect = vec3(0.0);
   material.glow = vec3(0.0);
   material.highlight = vec3(0.0);
+  material.metallic = vec3(0.0);
   material.grazing = vec3(0.0);
+  material.coat = vec3(0.0);
+  material.translucent = vec3(0.0);
 }

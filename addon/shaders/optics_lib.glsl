@@ -42,6 +42,21 @@ vec3 optics_metal_mean(vec3 normal, vec3 grazing, vec3 edge)
   return normal + rise / 21.0 - (normal + rise * 0.46266436) * (1.0 - edge) * (17.651385 / 126.0);
 }
 
+/* Reflectance of unpolarised light at a smooth metal of the complex index of refraction `index` + i `extinction`. (Born and Wolf
+ * 14.2.) */
+vec3 optics_conductor(float cosine, vec3 index, vec3 extinction)
+{
+  float sine_square = 1.0 - cosine * cosine;
+  vec3 difference = index * index - extinction * extinction - sine_square;
+  vec3 product = index * extinction;
+  vec3 squares = sqrt(difference * difference + 4.0 * product * product); /* a^2 + b^2 of the root a + i b */
+  vec3 a = sqrt(max(0.5 * (squares + difference), 0.0));
+  vec3 across = (squares + cosine * cosine - 2.0 * cosine * a) / (squares + cosine * cosine + 2.0 * cosine * a);
+  vec3 sums = cosine * cosine * squares + sine_square * sine_square;
+  vec3 along = across * (sums - 2.0 * cosine * sine_square * a) / (sums + 2.0 * cosine * sine_square * a);
+  return 0.5 * (across + along);
+}
+
 /* (48). */
 vec3 optics_mirror(vec3 direction, vec3 normal)
 {

@@ -15,6 +15,13 @@ Surface plane_surface(Plane plane, PlaneSurface info, Ray ray, float t)
   vec3 position = ray.origin + t * ray.direction;
   position -= (dot(position, plane.normal) + plane.offset) * plane.normal;
   vec3 offset = position - info.origin;
-  vec2 uv = vec2(dot(offset, info.meridian), dot(offset, cross(plane.normal, info.meridian)));
-  return ray_make_surface(position, plane.normal, plane.normal, uv, info.material, ray_flat_error(plane.normal, position) + RAY_RELATIVE_ERROR * abs(plane.offset));
+  vec3 other = cross(plane.normal, info.meridian);
+  vec2 uv = vec2(dot(offset, info.meridian), dot(offset, other));
+  Surface surface = ray_make_surface(position, plane.normal, plane.normal, uv, info.material,
+                 ray_flat_error(plane.normal, position) + RAY_RELATIVE_ERROR * abs(plane.offset));
+#ifdef HAS_GRADIENTS
+  surface.gradient_u = info.meridian;
+  surface.gradient_v = other;
+#endif
+  return surface;
 }

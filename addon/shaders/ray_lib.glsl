@@ -3,12 +3,16 @@
 /* What a ray is, as the bits of `scene.Visibility` that an object must have for the ray to see it. Rays that pass straight
  * through a surface stay what they are. */
 #define RAY_CAMERA 1
+#define RAY_DIFFUSE 2 /* what sees the sky for a diffuse surface; on its way it is a shadow ray */
 #define RAY_GLOSSY 4
 #define RAY_TRANSMISSION 8
 #define RAY_SHADOW 16
 #define RAY_SHADOW_OF_CATCHERS 80 /* a shadow ray that only shadow catchers stop */
 
-/* The bits that say how camera rays see an object. */
+/* Further bits of it; those beyond are groups of objects that lights are linked to. */
+#define VISIBILITY_DIFFUSE 2
+#define VISIBILITY_GLOSSY 4
+#define VISIBILITY_TRANSMISSION 8
 #define VISIBILITY_ALL 31
 #define VISIBILITY_HOLDOUT 32
 #define VISIBILITY_SHADOW_CATCHER 64
@@ -30,8 +34,15 @@ struct Surface {
 #ifdef HAS_TRIANGLE
   vec3 lift; /* from position to the smooth surface that the vertex normals tell, on the side that the ray comes from */
 #endif
+#ifdef HAS_GRADIENTS
+  vec3 gradient_u; /* of uv over position, along the surface: what lies across it is of no meaning */
+  vec3 gradient_v;
+#endif
 #ifdef HAS_ATTRIBUTES
   vec2 weights; /* of the second and the third value of the primitive's attributes */
+#ifdef HAS_GRADIENTS
+  vec3 gradient_first, gradient_second; /* of the weights */
+#endif
   int kind;
   int index; /* of the primitive among those of its kind */
   int geometry;
@@ -61,7 +72,15 @@ Surface ray_make_surface(vec3 position, vec3 geometric_normal, vec3 shading_norm
 #ifdef HAS_TRIANGLE
   surface.lift = vec3(0.0);
 #endif
+#ifdef HAS_GRADIENTS
+  surface.gradient_u = vec3(0.0);
+  surface.gradient_v = vec3(0.0);
+#endif
 #ifdef HAS_ATTRIBUTES
+#ifdef HAS_GRADIENTS
+  surface.gradient_first = vec3(0.0);
+  surface.gradient_second = vec3(0.0);
+#endif
   surface.weights = vec2(0.0);
   surface.kind = -1;
   surface.index = 0;

@@ -62,6 +62,19 @@ vec2 sampling_2d(uint pixel, int index, int dimension)
   return vec2(digits >> 8u) * (1.0 / 16777216.0); /* as many digits as a float has */
 }
 
+/* Densities of directions that are not left to chance: of what only one way finds, and of rays that have but one way to go. */
+#define SAMPLING_ALWAYS 1e18
+#define SAMPLING_CERTAIN 1e30
+
+/* How much a direction counts that comes of one way to choose directions where another may choose it as well: 0 to 1, in sum 1
+ * over both ways. The densities may be rough guesses, if only they are the same from both sides (Veach and Guibas 1995, the
+ * power heuristic). */
+float sampling_weight(float density, float of_other)
+{
+  float ratio = of_other / max(density, 1e-18);
+  return 1.0 / (1.0 + ratio * ratio);
+}
+
 /* A point of the unit disc, evenly. */
 vec2 sampling_disc(vec2 u)
 {

@@ -1,6 +1,9 @@
 /* What happens where a ray meets a surface: paper 2.4, step 2. Light that is given off, and the two rays that go on from
  * there. */
 #include "shadow_lib.glsl"
+#ifdef HAS_SEEN_LAMPS
+#include "lamp_lib.glsl"
+#endif
 
 /* A ray of the path and what it stands for. A camera ray has met nothing but surfaces that do not bend it. */
 struct Path {
@@ -9,6 +12,11 @@ struct Path {
   vec3 weight; /* its share of the pixel */
   int depth;   /* the eye ray is 1 */
   ivec4 media; /* the bodies it is inside of */
+  float density;       /* of the rays of the lobe that it left, in its direction, times 2 pi; 0: the lights were asked already */
+  float length_before; /* of the ray before the surfaces that it has passed since it was bent */
+#ifdef HAS_LIGHT_PATH
+  int passed; /* surfaces that did not bend its rays */
+#endif
 };
 
 Path shading_path(Ray ray, float t_max, vec3 weight, int depth, ivec4 media)
@@ -19,6 +27,11 @@ Path shading_path(Ray ray, float t_max, vec3 weight, int depth, ivec4 media)
   path.weight = weight;
   path.depth = depth;
   path.media = media;
+  path.density = SAMPLING_CERTAIN;
+  path.length_before = 0.0;
+#ifdef HAS_LIGHT_PATH
+  path.passed = 0;
+#endif
   return path;
 }
 
@@ -77,27 +90,95 @@ Ray shading_refracted(Surface surface, vec3 bent, vec3 face, int kind)
   return ray_make(ray_spawn(surface, bent), bent, kind);
 }
 
+#ifdef HAS_NORMALS
+/* A material's own normal as a unit vector that `incoming` looks at, and by which it is mirrored off the surface: the reflected
+ * ray is lifted over it where it is not, and the normal is the one that mirrors it so. */
+vec3 shading_bent_normal(vec3 normal, vec3 incoming, vec3 face)
+{
+  normal = normalize(normal);
+  vec3 mirrored = optics_mirror(incoming, normal);
+  float height = -dot(incoming, face);
+  float lacking = min(0.9 * height, 0.01) - dot(mirrored, face);
+  return lacking > 0.0 ? normalize(normalize(mirrored + lacking * face) - incoming) : normal;
+}
+#endif
+
+/* Density of a path that passes a surface straight. Where shadow rays do not pass, what is behind is found by the path alone. */
+float shading_density_passed(float density, bool shadows_pass)
+{
+  return shadows_pass || density == 0.0 ? density : SAMPLING_CERTAIN;
+}
+
 /* The path on the other side of a surface that is not there for it. */
 Path shading_beyond(Path path, Surface surface, float t)
 {
   path.ray.origin = ray_spawn(surface, path.ray.direction);
   path.t_max -= t;
+  path.length_before += t;
+  path.density = shading_density_passed(path.density, false);
   return path;
+}
+
+#ifdef HAS_SEEN_LAMPS
+/* What a path sees of lamps before it meets a surface after `t_max`, or nothing. */
+vec3 shading_lamps(Path path, float t_max, bool missed)
+{
+  vec3 seen = vec3(0.0);
+  int count = int(frame_seen_lamp_count);
+  for (int index = 0; index < count; index++) {
+    Light light = read_light(index);
+    LightShape shape = read_light_shape(index);
+    float range;
+    vec3 radiance = lamp_radiance(light, shape, path.ray, range);
+    bool is_sun = light.kind == LIGHT_SUN;
+    bool sees = (light.visibility & path.ray.kind) != 0 && range > 0.0 && (is_sun ? missed : range < t_max);
+#ifdef HAS_LIGHT_LINKING
+    /* Linked to some objects: a mirror does not know whether to them. */
+    sees = sees && (path.ray.kind == RAY_CAMERA || light.receivers + light.blockers == 0);
+#endif
+    if (sees) {
+      float asked = light_density(is_sun ? 1.0 : path.length_before + range, shape.seen_area);
+      radiance *= sampling_weight(path.density, asked);
+#ifdef HAS_ABSORPTION
+      radiance *= optics_absorb(medium_absorption(path.media), range);
+#endif
+      seen += radiance;
+    }
+  }
+  return path.weight * seen;
+}
+#endif
+
+/* What a surface gives off towards a path that meets it after `t`. As a light it may have been asked before. */
+vec3 shading_glow(Path path, Material material, float t)
+{
+  vec3 glow = path.weight * material.glow;
+#ifdef HAS_EMITTERS
+  if (frame_sample >= 0.0) {
+    glow *= sampling_weight(path.density, light_density(path.length_before + t, material.glow_area));
+  }
+#endif
+  return glow;
 }
 
 /* Where a path meets a surface: what it gives off towards the eye is added to `radiance`, what is cut out of the picture taken
  * off `alpha`, `lit` is what the lights are to light, and the result what goes on. */
-Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout float alpha, out Lit lit)
+Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material material, inout vec3 radiance,
+                          inout float alpha, out Lit lit)
 {
   vec3 incoming = path.ray.direction;
-  Surface surface = bvh_surface(hit, path.ray);
-  Material material = material_at(surface);
   bool entering = dot(incoming, surface.geometric_normal) < 0.0;
   vec3 normal = entering ? surface.shading_normal : -surface.shading_normal;
   vec3 face = entering ? surface.geometric_normal : -surface.geometric_normal;
   if (dot(normal, incoming) >= 0.0) { /* an interpolated normal that looks away: the surface's own is the truth */
     normal = face;
   }
+#ifdef HAS_NORMALS
+  lit.smooth_normal = normal;
+  if (optics_largest(abs(material.normal)) > 0.0) {
+    normal = shading_bent_normal(material.normal, incoming, face);
+  }
+#endif
   bool culled = false;
 #ifdef HAS_CULLING
   culled = !entering && material.cull_back > 0.5;
@@ -130,6 +211,14 @@ Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout f
     material_hide(material);
     material.transmit *= eta == 1.0 ? 1.0 : 0.0;
     alpha -= optics_mean(path.weight * (1.0 - material.transmit));
+#ifdef HAS_HOLDOUT_SHARE
+    material.holdout = 0.0;
+#endif
+  }
+#endif
+#ifdef HAS_HOLDOUT_SHARE
+  if (path.ray.kind == RAY_CAMERA && !culled) {
+    alpha -= optics_mean(path.weight) * material.holdout;
   }
 #endif
 #ifdef HAS_SHADOW_CATCHER
@@ -139,72 +228,112 @@ Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout f
     material.glow = vec3(0.0);
   }
 #endif
-  radiance += path.weight * material.glow;
-
   float cos_i = min(-dot(normal, incoming), 1.0);
+  float cos_t;
+#ifdef HAS_COAT
+  vec3 coat = gloss_coat(material, cos_i);
+  gloss_lay_coat(material, cos_i);
+#endif
+  radiance += shading_glow(path, material, hit.t);
 #ifdef HAS_ROUGHNESS
   gloss_give_back(material, cos_i);
 #endif
-  float cos_t;
-  float fresnel = optics_fresnel(cos_i, eta, cos_t);
-  bool total = transmits && cos_t == 0.0;
+  float mirror_eta = material_mirror_eta(material, eta);
+  float fresnel = optics_fresnel(cos_i, mirror_eta, cos_t);
   vec3 mirror = material_mirror(material, cos_i, fresnel);
-  vec3 through = total ? vec3(0.0) : material_through(material, fresnel);
+  vec3 through = material_through(material, optics_fresnel(cos_i, eta, cos_t));
+  bool total = transmits && cos_t == 0.0;
   bool scatters = false; /* what goes through; facets that reflect totally are then those of the mirror alone */
 #ifdef HAS_ROUGHNESS
   scatters = frame_sample >= 0.0 && gloss_transmission_is_rough(material, eta);
 #endif
-  if (total && material.fresnel < 0.5 && !scatters) {
-    mirror += material.transmit;
+  if (total) {
+    mirror += scatters ? vec3(0.0) : through;
+    through = vec3(0.0);
   }
   vec3 mirrored = optics_mirror(incoming, normal);
   vec3 bent = optics_refract(incoming, normal, cos_i, cos_t, eta);
-  vec3 diffuse = material.diffuse;
 #ifdef HAS_ROUGHNESS
   if (gloss_mirror_is_rough(material)) {
     float mean = microfacet_mean_cosine(cos_i, material.roughness * material.roughness);
-    fresnel = optics_fresnel(mean, eta, cos_t);
+    fresnel = optics_fresnel(mean, mirror_eta, cos_t);
   }
+#endif
+  material.diffuse *= 1.0 - fresnel * material.diffuse_covered;
+#ifdef HAS_TRANSLUCENT
+  material.translucent *= 1.0 - fresnel * material.diffuse_covered;
+#endif
+#ifdef HAS_ROUGHNESS
+  bool mirror_is_rough = gloss_mirror_is_rough(material);
+  float of_coat = 0.0;
+  float density_mirrored = SAMPLING_CERTAIN;
+  float density_bent = SAMPLING_CERTAIN;
+#ifdef HAS_COAT
+  mirror_is_rough = mirror_is_rough || gloss_coat_is_rough(material);
+  of_coat = optics_mean(coat) / max(optics_mean(coat + mirror), 1e-30);
+#endif
   if (frame_sample >= 0.0) {
     /* The same facet for both: together they keep what comes in where they are as rough. Lights take numbers from 0 on. */
     vec2 u = sampling_2d(sampling_pixel(gl_FragCoord.xy), int(frame_sample), -path.depth);
-    if (gloss_mirror_is_rough(material)) {
-      mirrored = gloss_mirrored(material, eta, normal, incoming, u, mirror);
+    if (mirror_is_rough) {
+      mirrored = gloss_mirrored(material, eta, normal, incoming, u, of_coat, mirror, density_mirrored);
     }
+#ifdef HAS_COAT
+    else {
+      mirror += coat;
+    }
+#endif
     if (scatters) {
-      bent = gloss_refracted(material, eta, normal, incoming, u, through);
+      bent = gloss_refracted(material, eta, normal, incoming, u, through, density_bent);
     }
   }
   else {
-    gloss_draw_sharp(material, mirror, diffuse);
+    gloss_draw_sharp(material, mirror);
+    density_mirrored = mirror_is_rough ? 0.0 : SAMPLING_CERTAIN;
+    density_bent = gloss_transmission_is_rough(material, eta) ? 0.0 : SAMPLING_CERTAIN;
+#ifdef HAS_COAT
+    mirror += coat * gloss_sharpness(material.coat_roughness);
+#endif
   }
   lit.material = material;
   lit.material.reflect *= path.weight;
+#ifdef HAS_METALS
+  lit.material.metallic *= path.weight;
   lit.material.grazing *= path.weight;
+#endif
+#ifdef HAS_COAT
+  lit.material.coat *= path.weight;
+#endif
   lit.material.transmit *= culled ? vec3(0.0) : path.weight;
   lit.eta = eta;
   lit.beyond = beyond;
+  lit.of_coat = of_coat;
 #endif
-  if (material.fresnel > 0.5) {
-    diffuse *= 1.0 - fresnel * optics_largest(material.reflect);
-  }
   lit.surface = surface;
   lit.normal = normal;
   lit.view = incoming;
-  lit.diffuse = path.weight * diffuse;
+  lit.diffuse = path.weight * material.diffuse;
   lit.highlight = path.weight * material.highlight;
   lit.shine = material.shine;
   lit.media = path.media;
   lit.shadow = RAY_SHADOW;
-#ifdef HAS_LIGHT_SHAPES
   lit.depth = path.depth;
+#ifdef HAS_LIGHT_LINKING
+  lit.visibility = bvh_visibility(hit);
+#endif
+#ifdef HAS_TRANSLUCENT
+  lit.translucent = path.weight * material.translucent;
+#endif
+#ifdef HAS_DIFFUSE_ROUGHNESS
+  lit.diffuse_roughness = material.diffuse_roughness;
+  lit.given_back = diffuse_given_back(material.diffuse, material.diffuse_roughness);
 #endif
 
   bool goes_on = path.depth < int(frame_max_depth) && !culled;
 #ifdef HAS_SHADOW_CATCHER
   if (scattered.catches) {
     goes_on = false;
-    lit.diffuse = diffuse; /* whatever the path weighs, it is a ratio that is asked for */
+    lit.diffuse = material.diffuse; /* whatever the path weighs, it is a ratio that is asked for */
     lit.highlight = material.highlight;
 #ifdef HAS_ROUGHNESS
     lit.material = material;
@@ -220,11 +349,25 @@ Scattered shading_scatter(inout Path path, Hit hit, inout vec3 radiance, inout f
   if (scattered.reflects) {
     Ray ray = shading_reflected(surface, mirrored, face);
     scattered.reflected = shading_path(ray, 1e30, mirror, path.depth + 1, path.media);
+#ifdef HAS_ROUGHNESS
+    scattered.reflected.density = density_mirrored;
+#endif
+#ifdef HAS_LIGHT_PATH
+    scattered.reflected.passed = path.passed;
+#endif
   }
   if (scattered.refracts && !culled) {
     int kind = eta == 1.0 ? path.ray.kind : RAY_TRANSMISSION;
     Ray ray = shading_refracted(surface, bent, face, kind);
+    bool straight = eta == 1.0;
     scattered.refracted = shading_path(ray, 1e30, through, path.depth + 1, beyond);
+    scattered.refracted.length_before = straight ? path.length_before + hit.t : 0.0;
+#ifdef HAS_ROUGHNESS
+    scattered.refracted.density = straight ? shading_density_passed(path.density, SHADOWS_TINTED) : density_bent;
+#endif
+#ifdef HAS_LIGHT_PATH
+    scattered.refracted.passed = path.passed + (straight ? 1 : 0);
+#endif
   }
   return scattered;
 }

@@ -27,6 +27,8 @@ float sphere_hit(Sphere sphere, Ray ray, float t_max)
 
 #define SPHERE_FIXED_UV 2.0 /* `rotation.z` is larger where the other two are the uv of the whole sphere */
 
+#define SPHERE_POLE 1e-6 /* distance from the axis, over the radius, nearer to which u turns no faster */
+
 /* Rotate by modified Rodrigues parameters p = axis tan(angle / 4) (Shuster 1993, A survey of attitude representations). */
 vec3 sphere_rotate(vec3 p, vec3 v)
 {
@@ -43,5 +45,15 @@ Surface sphere_surface(Sphere sphere, SphereSurface info, Ray ray, float t)
   /* atan keeps the digits near the poles that acos, (31), loses. */
   float v = 1.0 - atan(length(local.xy), local.z) * (2.0 / TWO_PI);
   vec2 uv = info.rotation.z > SPHERE_FIXED_UV ? info.rotation.xy : vec2(quadric_u(local.x, local.y), v);
-  return ray_make_surface(sphere.center + radius * normal, normal, normal, uv, info.material, ray_error(sphere.center, radius));
+  Surface surface =
+      ray_make_surface(sphere.center + radius * normal, normal, normal, uv, info.material, ray_error(sphere.center, radius));
+#ifdef HAS_GRADIENTS
+  if (info.rotation.z <= SPHERE_FIXED_UV) {
+    float per_turn = 1.0 / (TWO_PI * radius * max(length(local.xy), SPHERE_POLE));
+    vec2 east = vec2(-local.y, local.x) / max(length(local.xy), SPHERE_POLE);
+    surface.gradient_u = per_turn * sphere_rotate(info.rotation, vec3(east, 0.0));
+    surface.gradient_v = 2.0 * per_turn * sphere_rotate(info.rotation, vec3(0.0, 0.0, 1.0) - local.z * local);
+  }
+#endif
+  return surface;
 }

@@ -5,12 +5,28 @@
  * traversal, since drivers inline it and it is most of the program. */
 #include "camera_lib.glsl"
 #include "shading_lib.glsl"
-#include "world_lib.glsl"
+#ifdef HAS_GUIDE
+#include "guide_hit_lib.glsl"
+#endif
 
 #ifdef COUNT_RAYS
 #define TRACE_COUNT(counter) counter += 1.0
 #else
 #define TRACE_COUNT(counter)
+#endif
+
+#ifdef HAS_GUIDE
+/* Whether most of what the eye sees at a surface lies behind it: it is the hole of a cut-out. */
+bool trace_sees_through(Path path, Scattered scattered)
+{
+#ifdef HAS_SHADOW_CATCHER
+  if (scattered.catches) {
+    return true;
+  }
+#endif
+  bool straight = scattered.refracts && scattered.refracted.ray.kind == RAY_CAMERA;
+  return straight && optics_mean(scattered.refracted.weight) > 0.5 * optics_mean(path.weight);
+}
 #endif
 
 void main()
@@ -31,6 +47,12 @@ void main()
   vec3 radiance_before = vec3(0.0);
   vec3 caught = vec3(0.0);
 #endif
+#ifdef HAS_GUIDE
+  vec4 guide = vec4(0.0);
+#endif
+#ifdef HAS_DEPTH_CUE
+  bool cued = false;
+#endif
 #ifdef COUNT_RAYS
   float eye_hits = 0.0, reflected = 0.0, refracted = 0.0, shadows = 0.0, dropped = 0.0;
 #endif
@@ -46,38 +68,70 @@ void main()
       ray = shadow.ray;
       limit = shadow.t_max;
     }
-    Hit hit = bvh_traverse(ray, limit, is_shadow && !SHADOWS_PASS);
+    Hit hit = bvh_traverse(ray, limit, is_shadow && !(SHADOWS_PASS && frame_shadows_pass > 0.5));
     bool missed = hit.kind < 0;
-    bool sees_sky = missed && !is_shadow;
-    bool path_ends = sees_sky;
+    bool path_ends = missed && !is_shadow;
+
+    /* One call for surfaces and sky, path and shadow rays: drivers inline it too. */
+    Surface surface = bvh_surface(hit, ray);
+    Point point = point_of_surface(surface, ray, hit.t, path.depth);
+    if (missed) {
+      point = point_of_sky(surface, ray, path.depth);
+      point.ray_kind = is_shadow ? RAY_DIFFUSE : ray.kind;
+    }
+#ifdef HAS_LIGHT_PATH
+    point.ray_depth -= path.passed;
+    point.passed = path.passed + (is_shadow ? shadow.surfaces : 0);
+    point.ray_length += is_shadow ? 0.0 : path.length_before;
+#endif
+    Material material = material_at(missed ? int(frame_world_material) : surface.material, point);
 
     if (is_shadow) {
       if (missed) {
-        radiance += shadow_arrived(shadow);
+        vec3 arrived = shadow_arrived(shadow);
+#ifdef HAS_WORLD_LIGHT
+        arrived *= shadow.to_world ? material.glow : vec3(1.0);
+#endif
+        radiance += arrived;
       }
-      else if (SHADOWS_PASS && shadow_pass(shadow, hit)) {
+      else if (SHADOWS_PASS && frame_shadows_pass > 0.5 && shadow_pass(shadow, hit.t, surface, material)) {
         continue;
       }
       light++;
     }
-    else if (!missed) {
+#ifdef HAS_SEEN_LAMPS
+    else {
+      radiance += shading_lamps(path, hit.t, missed);
+    }
+#endif
+    if (!is_shadow && !missed) {
 #ifdef COUNT_RAYS
       eye_hits += path.depth == 1 ? 1.0 : 0.0;
 #endif
-      scattered = shading_scatter(path, hit, radiance, alpha, lit);
+      scattered = shading_scatter(path, hit, surface, material, radiance, alpha, lit);
+#ifdef HAS_GUIDE
+      if (path.ray.kind == RAY_CAMERA && !guide_is_hit(guide) && !trace_sees_through(path, scattered)) {
+        guide = guide_hit_make(hit, point);
+      }
+#endif
 #ifdef HAS_SHADOW_CATCHER
       if (scattered.catches) { /* meanwhile `radiance` is the light on the catcher */
         radiance_before = radiance;
         radiance = vec3(0.0);
       }
 #endif
-      light = lit_is(lit) ? 0 : int(frame_light_count);
+      light = lit_is(lit) ? 0 : shadow_turns();
+#ifdef FLAT_COLORS
+      radiance += lit.diffuse + path.weight * material.metallic;
+      scattered.reflects = false;
+      light = shadow_turns();
+#endif
     }
 
     if (light >= 0) {
       shadow = shadow_next(light, lit, radiance);
 #ifdef HAS_SHADOW_CATCHER
-      if (scattered.catches && light == int(frame_light_count) && lit.shadow == RAY_SHADOW) {
+      if (scattered.catches && light == shadow_turns() && lit.shadow == RAY_SHADOW) {
         caught = radiance; /* now the same lights with the shadows of catchers alone */
         radiance = vec3(0.0);
         lit.shadow = RAY_SHADOW_OF_CATCHERS;
@@ -85,7 +139,7 @@ void main()
         shadow = shadow_next(light, lit, radiance);
       }
 #endif
-      if (light < int(frame_light_count)) {
+      if (light < shadow_turns()) {
         TRACE_COUNT(shadows);
         continue;
       }
@@ -111,20 +165,36 @@ void main()
       if (scattered.catches) {
         path.weight *= shading_caught(caught, radiance);
         radiance = radiance_before;
-        sees_sky = true;
+        path.t_max = 0.0; /* on it goes, to where there is nothing but the sky */
+        path_ends = false;
       }
 #endif
     }
-    if (sees_sky) {
+    if (missed && !is_shadow) {
       if (frame_film_transparent > 0.5 && path.ray.kind == RAY_CAMERA) {
         alpha -= optics_mean(path.weight);
       }
-      else {
-        radiance += path.weight * world_radiance(path.ray.direction);
+      else if ((int(frame_world_visibility) & path.ray.kind) != 0) {
+        vec3 seen = path.weight * material.glow;
+#ifdef HAS_WORLD_GLOSS
+        seen *= sampling_weight(path.density, world_light_density(path.ray.direction));
+#endif
+        radiance += seen;
       }
     }
     if (path_ends) {
       if (stacked == 0) {
+#ifdef HAS_DEPTH_CUE
+        if (guide_is_hit(guide) && !cued) {
+          float cue = guide_depth_cue(guide.x);
+          radiance = mix(radiance, alpha * frame_depth_cue_color, cue);
+          cued = true;
+          if (frame_depth_cue_background > 0.5) { /* what is behind everything shows through what is far */
+            path = shading_path(eye, 0.0, vec3(cue * alpha), 1, medium_outside());
+            continue;
+          }
+        }
+#endif
         ended = true;
         break;
       }
@@ -132,6 +202,9 @@ void main()
     }
   }
   out_color = vec4(radiance, ended ? alpha : UNENDED_ALPHA);
+#ifdef HAS_OUTLINES
+  out_guide = guide;
+#endif
 #ifdef COUNT_RAYS
   out_rays = vec4(eye_hits, reflected, refracted, shadows);
   out_dropped = vec4(dropped, 1.0, 0.0, 0.0);

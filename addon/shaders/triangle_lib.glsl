@@ -107,8 +107,18 @@ Surface triangle_surface(Triangle triangle, TriangleSurface info, Ray ray, float
                  min(ray_flat_error(triangle_spread(e1, e2) / area, extent), ray_error(extent, 0.0)));
   float facing = dot(shading_normal, smooth_normal) * dot(normal, ray.direction);
   surface.lift = triangle_lift(triangle, info, weights, position, facing);
+#ifdef HAS_GRADIENTS
+  vec3 gradient_first = cross(e2, normal) / area;
+  vec3 gradient_second = cross(normal, e1) / area;
+  surface.gradient_u = (info.uv1.x - info.u0) * gradient_first + (info.uv2.x - info.u0) * gradient_second;
+  surface.gradient_v = (info.uv1.y - info.v0) * gradient_first + (info.uv2.y - info.v0) * gradient_second;
+#endif
 #ifdef HAS_ATTRIBUTES
   surface.weights = weights.yz;
+#ifdef HAS_GRADIENTS
+  surface.gradient_first = gradient_first;
+  surface.gradient_second = gradient_second;
+#endif
 #endif
   return surface;
 }

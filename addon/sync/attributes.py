@@ -8,7 +8,11 @@ for another output of the node than its colour, with `output` fac or alpha. The 
     random     of the point of a point cloud or of the curve, without a name
     instancer  of an instance made by geometry nodes, else a property of what instances it, else of the object
     property   a custom property or the path of any other, of the object or its data
-    object     what Object Info gives: color, alpha, index, location, random
+    object     what Object Info gives: color, alpha, index, location, random; and its space: space_x, space_y, space_z
+    generated  what takes a place in the object to its generated coordinates: scale and offset
+    island     a random number of each part of a mesh that is not joined to others, without a name
+    point      of a point cloud: position, radius
+    hair       of strands: is_strand, intercept, length, thickness
 
 Values are rows of 4 float32, colours scene-linear, alpha last. What is not there is left out: the engine takes 0, as
 Blender does.
@@ -17,11 +21,14 @@ Blender does.
 import numpy as np
 
 from .compat import levels_of_random_ids
+from .mesh_values import island_randoms, undeformed
 from .raw_attributes import TYPES, read_corner_vertices, values_of
+from .spaces import space_rows, texture_space
 
 #: Types of attributes that Cycles knows.
 _KNOWN = TYPES.keys() - {"INT32_2D"}
-_OF_PRIMITIVES = ("geometry", "random")
+_OF_PRIMITIVES = ("geometry", "random", "generated", "island", "point", "hair")
+_SPACE = ("space_x", "space_y", "space_z")
 
 
 def key_of(source, name="", output=""):
@@ -29,11 +36,22 @@ def key_of(source, name="", output=""):
     return f"{source}.{output}:{name}" if output else f"{source}:{name}"
 
 
+#: `spaces.texture_space`, by which generated coordinates are found.
+GENERATED_SCALE, GENERATED_OFFSET = key_of("generated", "scale"), key_of("generated", "offset")
+
+
 def parts_of(key):
     """(source, name, output) of a key."""
     head, _, name = key.partition(":")
     source, _, output = head.partition(".")
     return source, name, output
+
+
+def title_of(key):
+    """What a report calls the values of a key that vary over a shape."""
+    if key == GENERATED_OFFSET:
+        return "its form before modifiers deform it"
+    return f"the attribute {parts_of(key)[1] or 'Color'!r}, which is not the same all over it"
 
 
 def of_primitives(keys):
@@ -82,7 +100,7 @@ def output_of(color, output):
 def of_triangles(mesh, keys, corners, faces):
     """The attributes of triangles by key, (t, 1 or 3, 4): `corners` (t, 3) of the mesh, `faces` (t,)."""
     found = {}
-    for key, values, domain in _read(mesh, keys):
+    for key, values, domain in of_elements(mesh, keys):
         if domain == "CORNER":
             found[key] = values[corners]
         elif domain == "FACE":
@@ -96,7 +114,7 @@ def of_mesh(mesh, keys):
     """The attributes that are the same all over a mesh, as its exact shape takes them: (4,) by key; None where one
     varies."""
     found = {}
-    for key, values, domain in _read(mesh, keys):
+    for key, values, domain in of_elements(mesh, keys):
         if domain in ("CORNER", "FACE", "POINT") and len(values):
             found[key] = values[0] if np.allclose(values, values[0], rtol=1e-4, atol=1e-6) else None
     return found
@@ -104,7 +122,7 @@ def of_mesh(mesh, keys):
 
 def of_points(cloud, keys):
     """The attributes of the points of a point cloud by key, (n, 1, 4)."""
-    found = {key: values[:, None] for key, values, domain in _read(cloud, keys) if domain == "POINT"}
+    found = {key: values[:, None] for key, values, domain in _read(cloud, keys, "point") if domain == "POINT"}
     return found | {key: values[:, None] for key, values in randoms(keys, len(cloud.points)).items()}
 
 
@@ -121,13 +139,37 @@ def randoms(keys, count, first=0):
     return {key: _grey(_unit(values)) for key in wanted}
 
 
-def _read(data, keys):
-    """Yield (key, values (n, 4), domain) of the keys that the data has."""
+def _read(data, keys, own_source=""):
+    """Yield (key, values (n, 4), domain) of the keys that the data has; `own_source`: a source besides geometry whose
+    names are those of its attributes."""
     for key in keys:
         source, name, output = parts_of(key)
-        read = read_attribute(data, name, output) if source == "geometry" else None
+        read = read_attribute(data, name, output) if source in ("geometry", own_source) else None
         if read is not None:
             yield key, *read
+
+
+def of_elements(mesh, keys):
+    """Yield (key, values (n, 4), domain) of the keys that a mesh has: its attributes, and what is worked out from its
+    parts and from its form before it is deformed."""
+    yield from _read(mesh, keys)
+    for key in keys:
+        if key == key_of("island"):
+            yield key, _as_color(island_randoms(mesh)[:, None]), "POINT"
+        elif key == GENERATED_OFFSET and (places := undeformed(mesh)) is not None:
+            scale, offset = texture_space(mesh)
+            yield key, _as_color((places * scale + offset).astype(np.float32)), "POINT"
+
+
+def of_texture_space(data, keys):
+    """What takes a place in the space of data to its generated coordinates, (4,) by key. Of a deformed mesh the offset
+    is an attribute of its primitives, which goes before this."""
+    if GENERATED_SCALE not in keys:
+        return {}
+    scale, offset = texture_space(data)
+    if hasattr(data, "polygons") and undeformed(data) is not None:
+        scale = np.zeros(3)
+    return {GENERATED_SCALE: np.append(scale, 1.0), GENERATED_OFFSET: np.append(offset, 1.0)}
 
 
 def of_instances(cloud, keys):
@@ -162,6 +204,8 @@ def of_object(obj, keys, matrices, random_ids=None, instancer=None):
 
 
 def _of_object_info(obj, name, matrices, random_ids, instancer):
+    if name in _SPACE:
+        return space_rows(matrices)[:, _SPACE.index(name)]
     if name == "location":
         return np.insert(np.asarray(matrices, np.float32)[..., :3, 3], 3, 1.0, axis=-1)
     if name == "random":

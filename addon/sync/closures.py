@@ -1,25 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The shader nodes that are understood, each as `Lobes`."""
+"""The table of shader nodes that scatter or give off light, each as `Lobes`."""
 
+from dataclasses import dataclass, field
+
+from ..engine.expression import clamped, expression, is_constant, less, maximum, minimum, select, settled, sqrt
 from .lobes import (
     Lobes,
+    clear_body,
     conductor_reflectance,
-    dielectric_body,
-    dielectric_coat,
     ior_of_reflectance,
     metal,
     mirror,
     normal_reflectance,
+    varnished,
 )
-from .textures import listed
-from .values import Value
+from .shader_nodes.registry import Node
+from .tree_reader import listed
 
-GREY = Value((0.8, 0.8, 0.8))
+#: Functions by the type of the node: `read(n)` with a `ClosureNode` gives `Lobes`.
+CLOSURES = {}
 #: Inputs that change nothing here; linked, or set to something, they are reported once for each material.
 _IGNORED = (
-    "Normal",
     "Coat Normal",
-    "Diffuse Roughness",
     "Subsurface Weight",
     "Anisotropic",
     "Anisotropy",
@@ -27,168 +29,257 @@ _IGNORED = (
     "Thin Film Thickness",
     "Thin Wall",
 )
+_GREY = (0.8, 0.8, 0.8)
+_SMALLEST_IOR = 1e-3
+
+
+def closure(*types):
+    """Decorate the function that reads shader nodes of these types."""
+
+    def enter(function):
+        for node_type in types:
+            assert node_type not in CLOSURES, node_type
+            CLOSURES[node_type] = function
+        return function
+
+    return enter
+
+
+@dataclass(frozen=True)
+class ClosureNode(Node):
+    """A shader node of a tree that is being read; `closures` has read the others."""
+
+    closures: object
+
+    def closure(self, name):
+        """The `Lobes` of the shader that feeds an input."""
+        return self.closures.read(self.input(name))
+
+    def number(self, *names):
+        return settled(super().number(*names))
+
+    def color(self, *names):
+        return settled(super().color(*names))
+
+    def normal(self):
+        """The shading normal that is linked; 0 for none."""
+        return self.vector("Normal") if self.linked("Normal") else (0.0, 0.0, 0.0)
 
 
 def read_closure(source, reader):
     """The `Lobes` of the shader that feeds a socket; nothing linked is black."""
-    if source is None or source.node is None:
-        return Lobes()
-    read = _NODES.get(source.type)
-    if read is None:
-        return _unknown(source, reader)
-    _report_ignored(source, reader)
-    return read(source, reader)
+    lobes = _Closures(reader).read(source)
+    if lobes.one_roughness:
+        reader.warn("its reflections of different roughness are rendered as one of their mean roughness")
+    return lobes
 
 
-def _unknown(source, reader):
-    """A shader that is not understood is diffuse, of its colour where it has one."""
-    color = source.input("Color") or source.input("Base Color")
-    reader.not_understood(source, "a diffuse surface" + (" of its color" if color else ""))
-    return Lobes(diffuse=reader.color(color) if color else GREY)
+@dataclass
+class _Closures:
+    """Reads each shader of a tree once."""
+
+    reader: object
+    known: dict = field(default_factory=dict)
+
+    def read(self, source):
+        if source is None or source.node is None:
+            return Lobes()
+        if source.key not in self.known:
+            self.known[source.key] = None
+            self.known[source.key] = self._read(source)
+        elif self.known[source.key] is None:
+            self.reader.warn(f"node {source.name!r} feeds itself; that link is left out")
+            return Lobes()
+        return self.known[source.key]
+
+    def _read(self, source):
+        if source.output.type != "SHADER":
+            return Lobes(glow=maximum(self.reader.color(source), 0.0))  # as Cycles has it
+        node = ClosureNode(source, self.reader, self)
+        _report_ignored(node)
+        return CLOSURES.get(source.type, _unknown)(node)
 
 
-def _report_ignored(source, reader):
-    used = []
-    for name in _IGNORED:
-        socket = source.node.inputs.get(name)
-        if socket is not None and socket.enabled and (socket.is_linked or _is_set(socket)):
-            used.append(socket.name)
-    roughness = source.node.inputs.get("Roughness")
-    rough = roughness is not None and (roughness.is_linked or roughness.default_value > 0.0)
-    if rough and getattr(source.node, "distribution", "GGX") in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
-        reader.warn(f"node {source.node.name!r}: its distribution is rendered as GGX")
+def _report_ignored(n):
+    used = [name for name in _IGNORED if n.linked(name) or _is_set(n, name)]
+    rough = n.linked("Roughness") or n.constant("Roughness") != 0.0
+    if rough and getattr(n.node, "distribution", "GGX") in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
+        n.warn("its distribution is rendered as GGX")
     if used:
-        reader.warn(f"node {source.node.name!r}: {listed(used, 'is', 'are')} not rendered")
+        n.warn(f"{listed(used, 'is', 'are')} not rendered")
 
 
-def _is_set(socket):
-    return socket.type != "VECTOR" and bool(socket.default_value)
+def _is_set(n, name):
+    return n.has(name) and not name.endswith("Normal") and bool(n.input(name).constant)
 
 
-def _principled(source, reader):
-    def number(name):
-        return reader.number(source.input(name))
+@closure("BSDF_TOON", "BSDF_SHEEN", "BSDF_VELVET", "BSDF_HAIR", "BSDF_HAIR_PRINCIPLED", "SUBSURFACE_SCATTERING")
+def _unknown(n):
+    """A shader that is not rendered is diffuse, of its colour where it has one."""
+    name = next((name for name in ("Color", "Base Color") if n.has(name)), None)
+    n.instead("a diffuse surface" + (" of its color" if name else ""))
+    return Lobes(diffuse=n.color(name) if name else _GREY, normal=n.normal())
 
-    alpha = reader.opacity(source.input("Alpha"))
+
+@closure("BSDF_RAY_PORTAL")
+def _ray_portal(n):
+    n.instead("a transparent surface")
+    return Lobes(clear=n.color("Color"))
+
+
+@closure("VOLUME_ABSORPTION", "VOLUME_SCATTER", "VOLUME_COEFFICIENTS", "PRINCIPLED_VOLUME")
+def _volume(n):
+    n.instead("black, since it is no surface,")
+    return Lobes()
+
+
+@closure("BSDF_PRINCIPLED")
+def _principled(n):
     lobes = principled(
-        reader.color(source.input("Base Color")),
-        metallic=number("Metallic"),
-        roughness=number("Roughness"),
-        transmission=number("Transmission Weight"),
-        ior=number("IOR"),
-        specular=number("Specular IOR Level"),
-        tint=reader.color(source.input("Specular Tint")),
-        multiscatter=_multiscatters(source),
+        n.color("Base Color"),
+        metallic=n.number("Metallic"),
+        roughness=n.number("Roughness"),
+        transmission=n.number("Transmission Weight"),
+        ior=n.number("IOR"),
+        specular=n.number("Specular IOR Level"),
+        tint=n.color("Specular Tint"),
+        multiscatter=_multiscatters(n),
+        diffuse_roughness=n.number("Diffuse Roughness") if n.has("Diffuse Roughness") else 0.0,
+        normal=n.normal(),
     )
-    coat = number("Coat Weight")
-    if coat > 0.0:
-        tint = Value((coat,) * 3)
-        lobes = lobes.plus(dielectric_coat(tint, number("Coat Roughness"), max(number("Coat IOR"), 1.0)))
-    strength = reader.constant(source.input("Emission Strength"))
-    if strength is None or strength > 0.0:
-        glow = reader.scaled(source.input("Emission Color"), source.input("Emission Strength"))
-        lobes = lobes.plus(Lobes(glow=glow))
-    return lobes if alpha >= 1.0 else Lobes(clear=Value((1.0, 1.0, 1.0))).mixed(lobes, max(alpha, 0.0))
+    coat = Lobes(
+        coat=clamped(n.number("Coat Weight")),
+        coat_roughness=n.number("Coat Roughness"),
+        coat_ior=maximum(n.number("Coat IOR"), 1.0),
+        coat_tint=n.color("Coat Tint"),
+        normal=lobes.normal,
+    )
+    glow = Lobes(glow=maximum(n.color("Emission Color") * n.number("Emission Strength"), 0.0))
+    return Lobes(clear=(1.0, 1.0, 1.0)).mixed(lobes.plus(coat).plus(glow), n.number("Alpha"))
 
 
 def principled(
-    base, *, metallic=0.0, roughness=0.5, transmission=0.0, ior=1.5, specular=0.5, tint=None, multiscatter=False
+    base,
+    *,
+    metallic=0.0,
+    roughness=0.5,
+    transmission=0.0,
+    ior=1.5,
+    specular=0.5,
+    tint=(1.0, 1.0, 1.0),
+    multiscatter=0.0,
+    diffuse_roughness=0.0,
+    normal=(0.0, 0.0, 0.0),
 ):
-    """Blender's Principled BSDF: metal, glass and a dielectric over a diffuse body, by weight.
+    """Blender's Principled BSDF without its coat: metal, glass and a dielectric over a diffuse body, by weight.
 
     As in Cycles, glass takes the root of the base colour at each of its surfaces, and the specular level changes the
     index of refraction of the opaque body only.
     """
-    m, w = (min(max(x, 0.0), 1.0) for x in (metallic, transmission))
-    ior = max(ior, 1e-3)
-    white = Value((1.0, 1.0, 1.0))
-    coat_ior = ior_of_reflectance(2.0 * specular * normal_reflectance(ior)) if specular != 0.5 else ior
-    coat = dielectric_coat(tint or white, roughness, coat_ior)
-    lobes = Lobes(diffuse=base).plus(coat).times((1.0 - m) * (1.0 - w))
-    if w > 0.0:
-        lobes = lobes.plus(dielectric_body(white, base.sqrt(), roughness, ior).times((1.0 - m) * w))
-    edge = tint.average if tint else (1.0, 1.0, 1.0)
-    return lobes.plus(metal(base, roughness, edge, multiscatter).times(m)) if m > 0.0 else lobes
+    m, w, base, tint = clamped(metallic), clamped(transmission), maximum(base, 0.0), clamped(tint)
+    ior, roughness = maximum(ior, _SMALLEST_IOR), clamped(roughness)
+    body = Lobes(diffuse=base, diffuse_roughness=clamped(diffuse_roughness))
+    body = varnished(body, tint, _specular_ior(ior, specular), roughness)
+    glass = clear_body(tint, sqrt(base), ior, roughness)
+    conductor = metal(minimum(base, 1.0), roughness=roughness, edge=tint, multiscatter=multiscatter)
+    return body.times((1.0 - m) * (1.0 - w)).plus(glass.times((1.0 - m) * w)).plus(conductor.times(m)).bumped(normal)
 
 
-def _multiscatters(source):
+def _specular_ior(ior, level):
+    """The index whose reflectance is twice `level` times as much."""
+    raised = ior_of_reflectance(maximum(2.0 * expression(level), 0.0) * normal_reflectance(ior))
+    return select(less(ior, 1.0), 1.0 / raised, raised)
+
+
+def _multiscatters(n):
     """Whether a node's distribution is Multiscatter GGX; the others are all drawn as GGX."""
-    return source.node.distribution == "MULTI_GGX"
+    return 1.0 if n.node.distribution == "MULTI_GGX" else 0.0
 
 
-def _diffuse(source, reader):
-    if reader.number(source.input("Roughness")) > 0.0:
-        reader.warn(f"node {source.node.name!r}: the roughness of a diffuse surface is not rendered")
-    return Lobes(diffuse=reader.color(source.input("Color")))
+@closure("BSDF_DIFFUSE")
+def _diffuse(n):
+    return Lobes(diffuse=n.color("Color"), diffuse_roughness=n.number("Roughness"), normal=n.normal())
 
 
-def _glossy(source, reader):
-    color, roughness = reader.color(source.input("Color")), reader.number(source.input("Roughness"))
-    return mirror(color, roughness, _multiscatters(source))
+@closure("BSDF_TRANSLUCENT")
+def _translucent(n):
+    return Lobes(translucent=n.color("Color"), normal=n.normal())
 
 
-def _metallic(source, reader):
-    roughness, multiscatter = reader.number(source.input("Roughness")), _multiscatters(source)
-    if source.node.fresnel_type != "F82":
-        index, extinction = (reader.color(source.input(name)).average for name in ("IOR", "Extinction"))
-        normal, near_edge = (conductor_reflectance(cosine, index, extinction) for cosine in (1.0, 1.0 / 7.0))
-        # Schlick's approximation there, of which F82's tint is the share.
-        edge = near_edge / (normal + (1.0 - normal) * (6.0 / 7.0) ** 5)
-        return metal(Value(tuple(normal)), roughness, edge, multiscatter)
-    edge = reader.color(source.input("Edge Tint")).average
-    return metal(reader.color(source.input("Base Color")), roughness, edge, multiscatter)
+@closure("BSDF_GLOSSY")
+def _glossy(n):
+    numbers = {"roughness": clamped(n.number("Roughness")), "multiscatter": _multiscatters(n), "normal": n.normal()}
+    return mirror(clamped(n.color("Color")), **numbers)
 
 
-def _glass(source, reader):
-    color = reader.color(source.input("Color"))
-    ior = max(reader.number(source.input("IOR")), 1e-3)
-    return dielectric_body(color, color, reader.number(source.input("Roughness")), ior)
+@closure("BSDF_METALLIC")
+def _metallic(n):
+    numbers = {"roughness": clamped(n.number("Roughness")), "multiscatter": _multiscatters(n), "normal": n.normal()}
+    if n.node.fresnel_type == "F82":
+        return metal(clamped(n.color("Base Color")), edge=clamped(n.color("Edge Tint")), **numbers)
+    index, extinction = n.vector("IOR"), n.vector("Extinction")
+    normal, near_edge = (conductor_reflectance(cosine, index, extinction) for cosine in (1.0, 1.0 / 7.0))
+    # Schlick's approximation there, of which F82's tint is the share.
+    return metal(normal, edge=clamped(near_edge / (normal + (1.0 - normal) * (6.0 / 7.0) ** 5)), **numbers)
 
 
-def _refraction(source, reader):
-    ior = max(reader.number(source.input("IOR")), 1e-3)
-    rough = min(max(reader.number(source.input("Roughness")), 0.0), 1.0)
-    return Lobes(clear=reader.color(source.input("Color")), clear_ior=ior, transmit_roughness=rough)
+@closure("BSDF_GLASS")
+def _glass(n):
+    color, ior = clamped(n.color("Color")), maximum(n.number("IOR"), _SMALLEST_IOR)
+    return clear_body(color, color, ior, clamped(n.number("Roughness"))).bumped(n.normal())
 
 
-def _transparent(source, reader):
-    return Lobes(clear=reader.color(source.input("Color")), clear_ior=1.0)
+@closure("BSDF_REFRACTION")
+def _refraction(n):
+    numbers = {"ior": maximum(n.number("IOR"), _SMALLEST_IOR), "transmit_roughness": clamped(n.number("Roughness"))}
+    return Lobes(bent=clamped(n.color("Color")), normal=n.normal(), **numbers)
 
 
-def _emission(source, reader):
-    return Lobes(glow=reader.scaled(source.input("Color"), source.input("Strength")))
+@closure("BSDF_TRANSPARENT")
+def _transparent(n):
+    return Lobes(clear=n.color("Color"))
 
 
-def _mix(source, reader):
-    factor, a, b = source.input(0), source.input(1), source.input(2)
-    first, second = read_closure(a, reader), read_closure(b, reader)
-    if factor.type == "FRESNEL":
-        return first.mixed_by_fresnel(second, max(reader.number(factor.input("IOR")), 1.0))
-    if factor.type == "LAYER_WEIGHT" and factor.output.identifier == "Fresnel":
-        # Cycles: the index of refraction of a blend is 1 / (1 - blend).
-        blend = min(max(reader.number(factor.input("Blend")), 0.0), 0.99)
-        return first.mixed_by_fresnel(second, 1.0 / (1.0 - blend))
-    share = reader.constant(factor)
-    if share is None:
-        reader.not_understood(factor, "half of each shader")
-        share = 0.5
-    return first.mixed(second, min(max(share, 0.0), 1.0))
+@closure("HOLDOUT")
+def _holdout(n):
+    return Lobes(holdout=1.0)
 
 
-def _add(source, reader):
-    return read_closure(source.input(0), reader).plus(read_closure(source.input(1), reader))
+@closure("EMISSION", "BACKGROUND")
+def _emission(n):
+    return Lobes(glow=maximum(n.color("Color") * n.number("Strength"), 0.0))
 
 
-_NODES = {
-    "BSDF_PRINCIPLED": _principled,
-    "BSDF_DIFFUSE": _diffuse,
-    "BSDF_GLOSSY": _glossy,
-    "BSDF_METALLIC": _metallic,
-    "BSDF_GLASS": _glass,
-    "BSDF_REFRACTION": _refraction,
-    "BSDF_TRANSPARENT": _transparent,
-    "EMISSION": _emission,
-    "BACKGROUND": _emission,
-    "MIX_SHADER": _mix,
-    "ADD_SHADER": _add,
-}
+@closure("MIX_SHADER")
+def _mix(n):
+    return n.closure(1).mixed(n.closure(2), n.number(0))
+
+
+@closure("ADD_SHADER")
+def _add(n):
+    return n.closure(0).plus(n.closure(1))
+
+
+def read_absorption(source, reader):
+    """Beer-Lambert coefficient of what is linked to the Volume socket, as Cycles has it: density * (1 - colour)."""
+    if source is None or source.node is None:
+        return (0.0, 0.0, 0.0)
+    n = Node(source, reader)
+    if source.type == "VOLUME_ABSORPTION":
+        absorption = maximum(n.number("Density") * (1.0 - n.color("Color")), 0.0)
+    elif source.type == "VOLUME_COEFFICIENTS":
+        absorption = maximum(n.vector("Absorption Coefficients"), 0.0)
+        others = [
+            name
+            for name in ("Scatter Coefficients", "Emission Coefficients")
+            if n.linked(name) or any(n.input(name).constant)
+        ]
+        if others:
+            n.warn(f"{listed(others, 'is', 'are')} not rendered")
+    else:
+        reader.left_out(source, "its volume")
+        return (0.0, 0.0, 0.0)
+    if not is_constant(absorption):
+        n.warn("an absorption that varies is not rendered; it is left out")
+        return (0.0, 0.0, 0.0)
+    return absorption

@@ -21,6 +21,17 @@ def node_tree(owner):
     return owner.node_tree
 
 
+def flattened(owner):
+    """(Node tree in use of a material, world or light, what must be kept while it is read); None for the tree where it
+    is shaded without nodes. Blender from 5.0 on gives it without groups, muted nodes, repetitions and closures; of
+    links that go in a circle it makes nothing: then it is the tree as it is."""
+    tree = node_tree(owner)
+    if tree is None or not hasattr(owner, "inline_shader_nodes"):
+        return tree, None
+    made = owner.inline_shader_nodes()
+    return (made.node_tree, made) if made.node_tree.nodes else (tree, None)
+
+
 def light_factor(light, matrix):
     """What multiplies a light's energy, (r, g, b): colour, and from 4.5 exposure, temperature and `normalize`.
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What data is drawn as: a `Shape`, or a Geometry of triangles, spheres or strands. Each is read once."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ..engine.scene import Geometry
 from ..wording import counted
-from .attributes import of_primitives, parts_of, read_attribute
+from .attributes import of_elements, of_primitives, of_texture_space, title_of
 from .curves import DEFAULT_RADIUS, Read, sampling_of, strands_of_curves, strands_of_edges, strands_of_legacy_curve
 from .islands import find_islands
 from .keys import data_key, original_key
@@ -13,6 +13,7 @@ from .meshes import is_closed_mesh, read_mesh, read_triangles
 from .particle_hair import strands_of_particles
 from .points import read_points
 from .shapes import is_closed_shape
+from .strand_values import of_strands
 from .taken import Recognitions, taken_as
 
 #: Types whose evaluated geometry comes along as copies of their own, that show nothing, or that Blender draws itself.
@@ -21,6 +22,8 @@ SILENT = {
     *("EMPTY", "CAMERA", "ARMATURE", "LATTICE", "LIGHT_PROBE", "SPEAKER"),
     *("GPENCIL", "GREASEPENCIL"),
 }
+#: What is drawn as strands.
+_STRANDS = {"CURVES", "CURVE", "HAIR"}
 #: What else an object can be, as a report calls it.
 _NOT_RENDERED = {"VOLUME": "a volume"}
 
@@ -70,7 +73,13 @@ class Contents:
             self._warn(copies, f"is not rendered: it is {what}")
             return ()
         keys = of_primitives({key for shading in shadings for key in shading.attributes})
-        return tuple(readers[copies.kind](copies, shadings, keys))
+        found = tuple(readers[copies.kind](copies, shadings, keys))
+        constants = of_texture_space(copies.data, keys) if found else {}
+        if copies.kind in _STRANDS:
+            constants |= of_strands(keys, is_particle_hair=copies.kind == "HAIR")
+        if not constants:
+            return found
+        return tuple(replace(content, constants=constants | content.constants) for content in found)
 
     def _warn(self, copies, what):
         self._reports.warn(f"object {copies.obj.name!r} {what}")
@@ -88,7 +97,7 @@ class Contents:
         if taken.problem:
             self._reports.warn(f"object {obj.name!r}: rendered as a {taken.reason}")
         if taken.shape is not None:
-            self._report_lost(obj, shadings, taken)
+            self._report_lost(obj, taken)
             constants = {key: value for key, value in taken.constants.items() if value is not None}
             yield Content(taken.shape, taken.kind.lower(), is_closed_shape(taken.shape), constants)
             return
@@ -97,16 +106,11 @@ class Contents:
             matters = any(shading.transmits for shading in shadings)
             yield Content(geometry, "mesh", not matters or self._is_closed(mesh))
 
-    def _report_lost(self, obj, shadings, taken):
+    def _report_lost(self, obj, taken):
         """Name what a shape that was chosen by hand cannot show."""
-        for shading in shadings:
-            if shading.uv is not None and not shading.uv.plain:
-                what = f"the Mapping node of material {shading.name!r}"
-                self._reports.warn(f"object {obj.name!r}: {what} is not rendered on an exact shape")
         for key, value in taken.constants.items():
             if value is None:
-                what = f"the attribute {parts_of(key)[1]!r}, which is not the same all over it,"
-                self._reports.warn(f"object {obj.name!r}: {what} is not rendered on an exact shape")
+                self._reports.warn(f"object {obj.name!r}: on an exact shape {title_of(key)} is not rendered")
 
     def _is_closed(self, mesh):
         key = data_key(mesh)
@@ -116,12 +120,12 @@ class Contents:
 
     def _triangles(self, copies, shadings, keys, islands):
         """The Geometry of a mesh, shared by all objects that have the mesh and its uv needs in common."""
-        mesh, sources = copies.data, tuple(shading.uv for shading in shadings)
-        sources = sources if any(sources) else ()
-        key = data_key(mesh), len(shadings), sources, keys, islands
+        mesh, maps = copies.data, tuple(shading.uv_map for shading in shadings)
+        maps = maps if any(name is not None for name in maps) else ()
+        key = data_key(mesh), len(shadings), maps, keys, islands
         if key not in self._geometries:
-            found = self._islands(mesh, keys) if islands and not sources else None
-            read = read_triangles(mesh, len(shadings), sources, keys, None if found is None else found.rest)
+            found = self._islands(mesh, keys) if islands and not maps else None
+            read = read_triangles(mesh, len(shadings), maps, keys, None if found is None else found.rest)
             if read.dropped:
                 dropped, verb = counted(read.dropped, "triangle"), "is" if read.dropped == 1 else "are"
                 self._reports.warn(
@@ -132,8 +136,7 @@ class Contents:
         return self._geometries[key]
 
     def _islands(self, mesh, keys):
-        values = {key: read_attribute(mesh, *parts_of(key)[1:]) for key in keys if parts_of(key)[0] == "geometry"}
-        values = {key: read for key, read in values.items() if read is not None and read[1] != "EDGE"}
+        values = {key: (read, domain) for key, read, domain in of_elements(mesh, keys) if domain != "EDGE"}
         return find_islands(read_mesh(mesh), values, smooth_only=self._settings.recognise == "SMOOTH")
 
     def _points(self, copies, shadings, keys):

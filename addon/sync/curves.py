@@ -19,6 +19,7 @@ import numpy as np
 
 from ..engine import strands
 from ..engine.scene import Geometry
+from . import strand_values
 from .attributes import of_curves, parts_of, read_attribute
 from .compat import has_geometry_sets
 from .curve_sampling import BEZIER, CATMULL_ROM, NURBS, POLY, ControlCurves, Sampling, offsets_of, sample
@@ -131,10 +132,12 @@ def _control_curves(curves, keys, default_slot=0, default_radius=1.0):
         return _values(curves, name, "CURVE", kind, count, default)
 
     left, right = (read_raw(curves, f"handle_{side}", "POINT", "FLOAT_VECTOR") for side in ("left", "right"))
+    positions = read_positions(curves).astype(np.float64)
+    radius = of_point("radius", "FLOAT", default_radius).astype(np.float64)
     control = ControlCurves(
-        points=read_positions(curves).astype(np.float64),
+        points=positions,
         offsets=offsets.astype(np.int64),
-        radius=of_point("radius", "FLOAT", default_radius).astype(np.float64),
+        radius=radius,
         kind=of_curve("curve_type", "INT8", CATMULL_ROM),
         cyclic=of_curve("cyclic", "BOOLEAN", False),
         handles=None if left is None or right is None else np.stack([left, right], axis=1).astype(np.float64),
@@ -142,9 +145,11 @@ def _control_curves(curves, keys, default_slot=0, default_radius=1.0):
         order=of_curve("nurbs_order", "INT8", 4).astype(np.int64),
         knots_mode=of_curve("knots_mode", "INT8", 0).astype(np.int64),
         resolution=of_curve("resolution", "INT", 12),
-        attributes={key: values for key, (values, domain) in attributes.items() if domain == "POINT"},
+        attributes={key: values for key, (values, domain) in attributes.items() if domain == "POINT"}
+        | strand_values.of_points(keys, positions, offsets, radius),
     )
     by_curve = {key: values for key, (values, domain) in attributes.items() if domain == "CURVE"}
+    by_curve |= strand_values.of_curves(keys, positions, offsets)
     return control, of_curve("material_index", "INT", default_slot), by_curve
 
 

@@ -1,111 +1,116 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Images of Blender as engine images: scene-linear, premultiplied alpha, bottom row first."""
+"""Images of Blender as engine images, each read once, whatever nodes use it."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..engine.scene import Image
+from ..engine.expression import Parameter, call
+from ..engine.image import Image
+from .image_pixels import Linear, file_path, frame_path, read_file, read_image, read_tiles, to_linear
 from .keys import original_key
-from .values import MISSING, Value
 
-_INTERPOLATION = {"Closest": "CLOSEST"}
-_EXTENSION = {"REPEAT": "REPEAT", "EXTEND": "EXTEND", "CLIP": "CLIP"}
-#: Colour spaces of byte images whose values are already linear, or are no colours at all.
-_LINEAR = ("Non-Color", "Raw", "Linear", "Linear Rec.709", "Working Space", "scene_linear")
-_NO_ALPHA = ("NONE", "CHANNEL_PACKED")
+#: Cycles' color for images that are missing.
+MISSING = (1.0, 0.0, 1.0)
+_INTERPOLATIONS = {"Closest": "CLOSEST", "Linear": "LINEAR", "Cubic": "CUBIC", "Smart": "CUBIC"}
+_MISSING_TILE = Linear(np.array((255, 0, 255, 255), np.uint8).reshape(1, 1, 4), False, True)
+
+
+@dataclass(frozen=True)
+class Picture:
+    """An image of the scene by its number, an int Parameter; or the tiles from there on, `count` of them."""
+
+    number: Parameter
+    count: Parameter | None = None
+
+    def color(self, uv):
+        """The color and alpha at an Expression of uv, as an Expression."""
+        if self.count is None:
+            return call("image_sample", self.number, uv)
+        return call("image_sample_tiled", self.number, self.count, uv)
 
 
 class Images:
-    """The images of a scene: each of Blender's is read once, whatever materials use it."""
+    """The images of a scene at a frame."""
 
-    def __init__(self, scene, reports):
-        self._scene, self._reports = scene, reports
-        self._pixels = {}
-        self._indices = {}
+    def __init__(self, scene, frame=1):
+        self._scene, self._frame = scene, frame
+        self._read, self._pictures = {}, {}
 
-    def value(self, node, user, *, keep_straight=False):
-        """The image of an image or environment texture node as a `Value`; pink where it is missing.
+    def picture(self, node, warn, *, divided=False):
+        """The `Picture` of an image or environment texture node; None where it is missing.
 
-        `user` names for the report what it is used in. `keep_straight`: the node's alpha is used too, so that its
-        colour is not multiplied by it.
+        `warn` takes what there is to report. `divided`: the color is to be had without its alpha.
         """
-        image = node.image
-        if image is None:
-            self._reports.warn(f"{user}: node {node.name!r} has no image; pink is used instead")
-            return Value(MISSING)
-        extension = getattr(node, "extension", "")  # a panorama has none
-        key = original_key(image), node.interpolation, extension, keep_straight
-        if key not in self._indices:
-            pixels = self._read(image, user, keep_straight)
-            self._indices[key] = None if pixels is None else self._add(pixels, node, image, user)
-        return self._indices[key] or Value(MISSING)
-
-    def _add(self, pixels, node, image, user):
-        extension = getattr(node, "extension", "REPEAT")
-        if extension not in _EXTENSION:
-            self._reports.warn(
-                f"{user}: image {image.name!r} is repeated, extension {extension.title()} is not rendered"
-            )
-        index = self._scene.add_image(
-            Image(
-                pixels,
-                interpolation=_INTERPOLATION.get(node.interpolation, "LINEAR"),
-                extension=_EXTENSION.get(extension, "REPEAT"),
-                name=image.name,
-            )
-        )
-        mean = pixels.mean(axis=1)[:, :3].mean(axis=0, dtype=np.float64)
-        return Value((1.0, 1.0, 1.0), index, mean=tuple(np.nan_to_num(mean)))
-
-    def _read(self, image, user, keep_straight):
-        """Pixels (h, w, 4) float32 of a Blender image, or None, reported, where there are none."""
-        key = (original_key(image), keep_straight)
-        if key not in self._pixels:
-            self._pixels[key] = self._decoded(image, user, keep_straight)
-        return self._pixels[key]
-
-    def _decoded(self, image, user, keep_straight):
-        width, height = image.size
-        count = len(image.pixels) if width and height else 0
-        if not count:
-            where = f" ({image.filepath})" if image.filepath else ""
-            self._reports.warn(f"{user}: image {image.name!r}{where} cannot be read; pink is used instead")
+        if node.image is None:
+            warn("it has no image; pink is used instead")
             return None
-        if image.source in ("TILED", "SEQUENCE", "MOVIE"):
-            only = "its first tile" if image.source == "TILED" else "one frame of it"
-            self._reports.warn(f"{user}: of image {image.name!r} only {only} is rendered")
-        pixels = np.empty(count, np.float32)
-        image.pixels.foreach_get(pixels)
-        pixels = _rgba(pixels.reshape(height, width, -1))
-        if image.is_float:
-            return np.nan_to_num(pixels, copy=False, posinf=np.finfo(np.float32).max, neginf=0.0)
-        space = image.colorspace_settings.name
-        if space not in (*_LINEAR, "sRGB"):
-            self._reports.warn(f"{user}: image {image.name!r} is read as sRGB, not as {space}")
-        if space not in _LINEAR:
-            _decode_srgb(pixels)
-        straight = keep_straight or space == "Non-Color" or image.alpha_mode in _NO_ALPHA
-        if not straight and pixels[..., 3].min() < 1.0:
-            pixels[..., :3] *= pixels[..., 3:]
-        return pixels
+        tiles = self._tiles(node, warn)
+        if not tiles:
+            return None
+        sampling = {
+            "interpolation": _INTERPOLATIONS.get(node.interpolation, "LINEAR"),
+            "extension": getattr(node, "extension", "REPEAT"),  # a panorama has none
+            "divided": divided and not any(tile.is_straight for tile in tiles.values()),
+        }
+        key = (*self._key(node), *sampling.values())
+        if key not in self._pictures:
+            self._pictures[key] = self._add(node.image, tiles, sampling)
+        return self._pictures[key]
 
+    def table(self, key, make):
+        """The `Picture` of what `make` gives, pixels (h, w, 3 or 4) float32, mixed linearly and repeated; made once for
+        a key."""
+        if key not in self._pictures:
+            number = self._scene.add_image(Image(make(), name=key[0]))
+            self._pictures[key] = Picture(Parameter(number, "int"))
+        return self._pictures[key]
 
-def _rgba(pixels):
-    """(h, w, channels) of 1, 2, 3 or 4 channels as (h, w, 4)."""
-    channels = pixels.shape[2]
-    if channels == 4:
-        return pixels
-    rgba = np.ones((*pixels.shape[:2], 4), np.float32)
-    rgba[..., :3] = pixels[..., :3] if channels == 3 else pixels[..., :1]
-    if channels == 2:
-        rgba[..., 3] = pixels[..., 1]
-    return rgba
+    def _add(self, image, tiles, sampling):
+        """Add the images of tiles; their `Picture`."""
+        count = max(tiles) + 1
+        number = len(self._scene.images)
+        for tile in (tiles.get(i, _MISSING_TILE) for i in range(count)):
+            self._scene.add_image(Image(tile.pixels, name=image.name, srgb=tile.srgb, **sampling))
+        tiled = Parameter(count, "int") if image.source == "TILED" else None
+        return Picture(Parameter(number, "int"), tiled)
 
+    def _tiles(self, node, warn):
+        """The `Linear` by number of the tiles of a node's image, of most one; none, reported, where it has none."""
+        key = self._key(node)
+        if key not in self._read:
+            image, path = node.image, key[1]
+            tiles = read_tiles(image) if image.source == "TILED" else {0: self._stored(image, path, warn)}
+            lost = [1001 + number for number, stored in tiles.items() if stored is None]
+            if lost:
+                self._report_lost(image, path, lost if len(lost) < len(tiles) else (), warn)
+            self._read[key] = {number: to_linear(stored) for number, stored in tiles.items() if stored is not None}
+            self._report_spaces(image, self._read[key], warn)
+        return self._read[key]
 
-def _decode_srgb(pixels):
-    """Decode the colours (h, w, 4) of a byte image in place (IEC 61966-2-1); its 256 values need no power each."""
-    encoded = np.arange(256) / 255.0
-    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4).astype(np.float32)
-    alpha = pixels[..., 3].copy()
-    np.multiply(pixels, 255.0, out=pixels)
-    np.take(linear, np.rint(pixels, out=pixels).astype(np.uint8), out=pixels, mode="clip")
-    pixels[..., 3] = alpha
+    def _stored(self, image, path, warn):
+        if image.source == "MOVIE":
+            warn(f"of image {image.name!r}, a movie, only the first frame is rendered")
+        return read_file(path, image) if path else read_image(image)
+
+    def _report_lost(self, image, path, tiles, warn):
+        """Report an image that cannot be read, or those `tiles` of it."""
+        what = f"image {image.name!r}"
+        if tiles:
+            what = f"{'tile' if len(tiles) == 1 else 'tiles'} {', '.join(map(str, tiles))} of {what}"
+        place = path or image.filepath
+        warn(f"{what}{f' ({place})' if place else ''} cannot be read; pink is used instead")
+
+    def _report_spaces(self, image, tiles, warn):
+        for instead in {tile.instead for tile in tiles.values() if tile.instead}:
+            space = image.colorspace_settings.name
+            warn(f"image {image.name!r} is read as {instead}, not as {space}")
+
+    def _key(self, node):
+        """What tells the pixels of a node's image: the image, and the file of what is moving."""
+        image, path = node.image, ""
+        if image.source == "SEQUENCE":
+            path = frame_path(image, node.image_user, self._frame)
+        elif image.source == "MOVIE":
+            path = file_path(image)
+        return original_key(image), path

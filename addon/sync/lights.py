@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's lights as the engine's."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from ..engine.expression import is_constant
 from ..engine.primitives import invertible
-from ..engine.scene import Light
+from ..engine.scene import Light, Visibility
 from .closures import read_closure
-from .compat import light_factor, node_tree
+from .compat import flattened, light_factor
 from .nodes import output_source
-from .textures import NodeReader
+from .tree_reader import TreeReader, constant_of
+from .visibility import seen_by
 
 
 class Lights:
@@ -17,8 +21,8 @@ class Lights:
     def __init__(self, scene, reports):
         self._scene, self._reports = scene, reports
 
-    def add(self, obj, matrix):
-        """Add the light of a Blender object that stands in the world by `matrix` (4, 4)."""
+    def add(self, obj, matrix, links):
+        """Add the light of a Blender object that stands in the world by `matrix` (4, 4); `links`: the `LightLinks`."""
         light = obj.data
         strength, falls_off = self._emission(light)
         color = np.multiply(light_factor(light, matrix), strength)
@@ -29,25 +33,34 @@ class Lights:
         if made is None:
             self._reports.warn(f"light {obj.name!r} is scaled to zero or has no size and gives no light")
             return
-        self._scene.add_light(made if falls_off else made.without_falloff())
+        made = made if falls_off else made.without_falloff()
+        seen, receivers, blockers = Visibility(seen_by(obj)), links.receivers(obj), links.blockers(obj)
+        self._scene.add_light(replace(made, visibility=seen, receivers=receivers, blockers=blockers))
 
     def _emission(self, light):
         """What the light's nodes multiply its energy by, color times strength of an Emission, and whether the light
         falls off with the distance."""
-        tree = node_tree(light)
+        tree, _kept = flattened(light)
         surface = output_source(tree, "Surface") if tree is not None else None
         if surface is None or surface.node is None:
             return ((1.0, 1.0, 1.0) if tree is None else (0.0, 0.0, 0.0)), True
-        reader = NodeReader(f"light {light.name!r}", None, self._reports)
+        reader = TreeReader(f"light {light.name!r}", light, "LIGHT", None, self._reports)
         strength, falls_off = (1.0, 1.0, 1.0), True
         if surface.type == "EMISSION" and _is_falloff(surface.input("Strength"), light):
             strength, falls_off = _with_falloff(surface, reader)
         elif surface.type in ("EMISSION", "ADD_SHADER", "MIX_SHADER"):
-            strength = read_closure(surface, reader).glow.average
+            strength = _constant_color(read_closure(surface, reader).glow, reader)
         else:
             reader.not_understood(surface, "the light's own color")
         reader.finish()
         return strength, falls_off
+
+
+def _constant_color(value, reader):
+    """The colour (3,) of an Expression; of one that varies over the light white, reported."""
+    if not is_constant(value):
+        reader.warn("its light varies over it or with the direction; it is rendered white")
+    return np.broadcast_to(constant_of(value, (1.0,)), 3)
 
 
 def _is_falloff(source, light):
@@ -60,10 +73,10 @@ def _is_falloff(source, light):
 def _with_falloff(emission, reader):
     """(strength (3,), whether it falls off) of an Emission whose strength is that of a Light Falloff node."""
     falloff = emission.input("Strength")
-    if reader.number(falloff.input("Smooth")) > 0.0:
-        reader.warn(f"node {falloff.node.name!r}: its smoothing is not rendered")
-    strength = reader.color(emission.input("Color")).times(reader.number(falloff.input("Strength")))
-    return strength.average, falloff.output.identifier == "Quadratic"
+    if constant_of(reader.number(falloff.input("Smooth")), (0.0,))[0] > 0.0:
+        reader.warn(f"node {falloff.name!r}: its smoothing is not rendered")
+    strength = reader.color(emission.input("Color")) * reader.number(falloff.input("Strength"))
+    return _constant_color(strength, reader), falloff.output.identifier == "Quadratic"
 
 
 # The light of a Blender light that stands in the world by `matrix` (4, 4), None where it has no direction or no size.

@@ -1,257 +1,265 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The parts of a shader, added and mixed as node trees do, and how they become one material of the engine.
 
-The engine's material has one set of shares: either the mirror and refracted rays follow Fresnel, or their shares are
-constants. A shader of several parts is drawn by whichever kind sends more light straight on or back at normal
-incidence; parts of the other kind join with the share that they have at normal incidence.
+All are expressions: their arithmetic is done where a ray hits, at once in numpy among a user's constants, and left out
+where a node lacks a part, which is then a literal zero.
 """
 
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from ..engine.expression import (
+    Expression,
+    Literal,
+    call,
+    clamped,
+    expression,
+    is_constant,
+    is_zero,
+    largest,
+    less,
+    maximum,
+    mean,
+    select,
+    sqrt,
+)
 from ..engine.scene import Material
-from .values import Value
 
-#: Beside a smooth lobe one up to this roughness is drawn as smooth too; from the second on, not as a mirror at all.
-SHARP, BLUNT = 0.1, 0.5
+_BLACK, _WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 #: Lobes whose roughness differs by more than this look different.
 _SAME_ROUGHNESS = 0.1
-#: A reflection of less than this part of another is too weak to be told about.
-_UNSEEN = 0.1
 
 
 @dataclass(frozen=True)
 class Lobes:
-    """What a shader does with light; each share a `Value`.
+    """What a shader does with light. First the shares, of which those of two shaders add up:
 
-    `mirror` and `clear` are constant shares that are reflected and go through, `coat` and `glass` the ones of a smooth
-    dielectric of index `ior`, times Fresnel F and 1 - F. `metal` is reflected at normal incidence and grows to
-    `grazing`, `edge` its F82 tint. `clear_ior` bends what goes through as `clear`: 1 for Transparent. `roughness` is
-    that of all that is reflected, `transmit_roughness` of what goes through; `one_roughness` says that they replace
-    others. `multiscatter`: what facets lose to each other is given back.
+    `diffuse` and, from the other side, `translucent`; `metal` is mirrored at normal incidence and grows to `grazing`;
+    `varnish` and `glass` are mirrored times Fresnel's F, by the surface of a body that is not clear and of one that is;
+    `bent` goes through bent by the index `ior`, `clear` straight; `coat` is mirrored times F by a second surface that
+    lies on top; `glow` is given off, `holdout` cut out of the picture.
+
+    Then what is one number for all: that of two shaders is their mean, by the shares that it belongs to. `edge` is the
+    F82 tint of the metal, `multiscatter` 1 where its facets give back what they lose to each other. Of what is diffuse
+    the part `diffuse_covered` loses to the varnish what that mirrors, of what is bent the part `bent_covered` to the
+    glass.
     """
 
-    diffuse: Value = field(default_factory=Value)
-    glow: Value = field(default_factory=Value)
-    mirror: Value = field(default_factory=Value)
-    metal: Value = field(default_factory=Value)
-    grazing: Value = field(default_factory=Value)
-    clear: Value = field(default_factory=Value)
-    coat: Value = field(default_factory=Value)
-    glass: Value = field(default_factory=Value)
-    highlight: Value = field(default_factory=Value)
-    shine: float = 1.0
-    ior: float = 1.5
-    clear_ior: float = 1.0
-    edge: tuple = (1.0, 1.0, 1.0)
-    roughness: float = 0.0
-    transmit_roughness: float = 0.0
-    multiscatter: bool = False
-    one_roughness: bool = False
+    diffuse: Expression = _BLACK
+    translucent: Expression = _BLACK
+    metal: Expression = _BLACK
+    grazing: Expression = _BLACK
+    varnish: Expression = _BLACK
+    glass: Expression = _BLACK
+    bent: Expression = _BLACK
+    clear: Expression = _BLACK
+    coat: Expression = _BLACK
+    glow: Expression = _BLACK
+    holdout: Expression = 0.0
+
+    diffuse_roughness: Expression = 0.0
+    diffuse_covered: Expression = 0.0
+    roughness: Expression = 0.0
+    edge: Expression = _WHITE
+    multiscatter: Expression = 0.0
+    varnish_ior: Expression = 1.5
+    ior: Expression = 1.5
+    bent_covered: Expression = 0.0
+    transmit_roughness: Expression = 0.0
+    coat_roughness: Expression = 0.0
+    coat_ior: Expression = 1.5
+    coat_tint: Expression = _WHITE
+    normal: Expression = _BLACK  # 0: the surface's own
+    one_roughness: bool = False  # whether mirrors that look different were made one
+
+    def __post_init__(self):
+        for name in (*_SHARES, *_MEANS):
+            object.__setattr__(self, name, expression(getattr(self, name)))
 
     def plus(self, other):
-        """The sum; indices, exponent and roughness are those of the stronger part."""
-        strong, weak = (self, other) if self.reflectance >= other.reflectance else (other, self)
-        if weak.reflectance > 0.0 and strong.roughness <= SHARP < weak.roughness:
-            told = strong.one_roughness or weak.one_roughness or weak.reflectance > _UNSEEN * strong.reflectance
-            return replace(strong._sum(weak.as_highlight()), one_roughness=told)
-        return strong._sum(weak)
-
-    def _sum(self, other):
-        """The sum with another that reflects less, or as smoothly."""
-        shares = {
-            f.name: getattr(self, f.name).plus(getattr(other, f.name)) for f in fields(self) if f.name not in _NUMBERS
-        }
-        return Lobes(
-            **shares,
-            edge=_of_stronger(self, other, "edge", "metal"),
-            roughness=self.roughness if self.reflectance > 0.0 else other.roughness,
-            multiscatter=self.multiscatter if self.reflectance > 0.0 else other.multiscatter,
-            transmit_roughness=_of_stronger(self, other, "transmit_roughness", "clear", "glass"),
-            one_roughness=self.one_roughness or other.one_roughness or _differ_in_roughness(self, other),
-            shine=_of_stronger(self, other, "shine", "highlight"),
-            ior=_of_stronger(self, other, "ior", "coat", "glass"),
-            clear_ior=_of_stronger(self, other, "clear_ior", "clear"),
-        )
+        """The sum."""
+        summed = {name: getattr(self, name) + getattr(other, name) for name in _SHARES}
+        if not _same(self.normal, other.normal):
+            self, other = self._with_normal(), other._with_normal()
+        for name, weigh in _MEANS.items():
+            summed[name] = _mean_of(getattr(self, name), weigh(self), getattr(other, name), weigh(other))
+        told = self.one_roughness or other.one_roughness or _look_different(self, other)
+        return Lobes(**summed, one_roughness=told)
 
     def times(self, factor):
-        """All shares multiplied by a number."""
-        shares = {f.name: getattr(self, f.name).times(factor) for f in fields(self) if f.name not in _NUMBERS}
-        return replace(self, **shares)
+        """All shares multiplied by a number or, but for `holdout`, a colour."""
+        return replace(self, **{name: getattr(self, name) * factor for name in _SHARES})
 
     def mixed(self, other, factor):
         """(1 - factor) of this and `factor` of the other, as Mix Shader has it."""
+        factor = clamped(factor)
         return self.times(1.0 - factor).plus(other.times(factor))
 
-    def mixed_by_fresnel(self, other, ior):
-        """What Mix Shader does with a Fresnel node of index `ior` in its factor: this one under the other as a coat."""
-        under = replace(self, glass=self.glass.plus(self.clear), clear=Value(), coat=Value(), ior=ior)
-        coat = other.mirror.plus(other.metal).plus(other.coat)
-        none = {"mirror": Value(), "metal": Value(), "grazing": Value()}
-        over = replace(other.times(normal_reflectance(ior)), **none, coat=coat, ior=ior)
-        return under.plus(over)
+    def bumped(self, normal):
+        """The same with a shading normal, 0 for the surface's own."""
+        return replace(self, normal=normal)
 
     @property
     def reflectance(self):
-        """Share that is reflected at normal incidence."""
-        return self.mirror.weight + self.metal.weight + normal_reflectance(self.ior) * self.coat.weight
+        """Share that is reflected at normal incidence, but by the coat."""
+        by_fresnel = _reflected(self.varnish, self.varnish_ior) + _reflected(self.glass, self.ior)
+        return mean(self.metal) + by_fresnel
 
-    def as_highlight(self):
-        """The same beside a smooth mirror: what is too rough for one is highlight of the lights and, in metals, the
-        rougher the more, diffuse."""
-        sharp, f0 = sharpness(self.roughness), normal_reflectance(self.ior)
-        peak, exponent = phong_of(self.roughness)
-        constant = self.mirror.plus(self.metal)
-        metal, coat = constant.times(1.0 - sharp), self.coat.times((1.0 - sharp) * f0)
-        taken = f0 * self.coat.weight  # by the blurred and by the sharp part
-        left = max(0.0, (1.0 - (1.0 - sharp) * taken) * (1.0 - sharp * taken))
-        return replace(
-            self,
-            mirror=constant.plus(self.coat.times(f0)).times(sharp),
-            metal=Value(),
-            grazing=Value(),
-            coat=Value(),
-            diffuse=self.diffuse.times(left).plus(metal.times(self.roughness)),
-            highlight=self.highlight.plus(metal.times((1.0 - self.roughness) * peak)).plus(coat.times(peak)),
-            shine=exponent,
-            roughness=0.0,
-        )
+    def _with_normal(self):
+        return replace(self, normal=call("point_normal")) if is_zero(self.normal) else self
 
-    @property
-    def blurred(self):
-        """Whether some share holds less of what varies in it than the node tree has."""
-        return any(getattr(self, f.name).blurred for f in fields(self) if f.name not in _NUMBERS)
-
-    def material(self, absorption=(0.0, 0.0, 0.0)):
-        """The engine's material that comes nearest."""
-        f0 = normal_reflectance(self.ior)
-        by_fresnel = f0 * self.coat.weight + (1.0 - f0) * self.glass.weight
-        constant = self.mirror.plus(self.metal)
-        fresnel = by_fresnel > 0.0 and by_fresnel >= constant.weight + self.clear.weight
-        grazing = (0.0, 0.0, 0.0)
-        if fresnel:
-            diffuse, reflect, transmit = self.diffuse, self.coat.plus(constant), self.glass.plus(self.clear)
-            ior = self.ior
-        else:
-            diffuse = self.diffuse.times(max(0.0, 1.0 - f0 * self.coat.weight))
-            reflect = constant.plus(self.coat.times(f0))
-            transmit = self.clear.plus(self.glass.times(1.0 - f0))
-            ior = self.clear_ior if self.clear.weight >= self.glass.weight else self.ior
-            # Schlick's curve is too wide for indices near 1; of reflectances below 0.02 it is taken as less.
-            rising = self.grazing.plus(self.coat.times(min(50.0 * f0, 1.0)))
-            if rising.weight > 0.0:
-                grazing = np.minimum(_rgb(rising.average + self.mirror.average), 1.0)
+    def material(self, absorption=_BLACK):
+        """The engine's material."""
+        body = self._body()
         return Material(
-            **_colors(diffuse=diffuse, glow=self.glow, reflect=_at_most_one(reflect), transmit=_at_most_one(transmit)),
-            highlight=_rgb(self.highlight.average),
-            shine=self.shine,
-            ior=ior,
-            fresnel=fresnel,
-            absorption=_rgb(absorption),
-            roughness=self.roughness if reflect.weight > 0.0 else 0.0,
-            transmit_roughness=self.transmit_roughness if transmit.weight > 0.0 else 0.0,
-            grazing=tuple(grazing),
-            edge=self.edge,
-            multiscatter=self.multiscatter and not fresnel,
+            diffuse=self.diffuse,
+            translucent=self.translucent,
+            reflect=self.varnish + self.glass,
+            metallic=self.metal,
+            glow=self.glow,
+            fresnel=0.0 if is_zero(self.varnish) and is_zero(self.glass) else 1.0,
+            absorption=absorption,
+            coat=self.coat,
+            **body,
+            **{name: getattr(self, name) for name in _AS_THEY_ARE},
         )
 
-
-_NUMBERS = ("shine", "ior", "clear_ior", "edge", "roughness", "transmit_roughness", "multiscatter", "one_roughness")
-
-
-def _differ_in_roughness(a, b):
-    """Whether two parts are rough in different ways, of which one roughness stays."""
-    reflect = min(a.reflectance, b.reflectance) > 0.0 and abs(a.roughness - b.roughness) > _SAME_ROUGHNESS
-    through = [lobes.clear.weight + lobes.glass.weight for lobes in (a, b)]
-    return reflect or (min(through) > 0.0 and abs(a.transmit_roughness - b.transmit_roughness) > _SAME_ROUGHNESS)
-
-
-def _of_stronger(a, b, name, *shares):
-    """The number `name` of the one of two Lobes whose `shares` weigh more."""
-    weights = [sum(getattr(lobes, share).weight for share in shares) for lobes in (a, b)]
-    return getattr(a if weights[0] >= weights[1] else b, name)
-
-
-def _colors(**values):
-    """Arguments of Material: each colour, the number of its image and its attribute."""
-    colors = {name: _rgb(value.rgb) for name, value in values.items()}
-    colors |= {f"{name}_image": value.image for name, value in values.items()}
-    return colors | {f"{name}_attribute": value.attribute for name, value in values.items()}
+    def _body(self):
+        """What goes through, and the indices of refraction."""
+        straight, bent = not is_zero(self.clear), not is_zero(self.bent)
+        ior = expression(1.0) if straight else self.varnish_ior
+        if bent:
+            ior = select(less(mean(self.bent), mean(self.clear)), 1.0, self.ior)
+        opaque_ior = 0.0 if ior is self.varnish_ior else self.varnish_ior
+        if not is_zero(self.glass):
+            opaque_ior = select(less(mean(self.glass), mean(self.varnish)), opaque_ior, 0.0)
+        return {
+            "transmit": self.bent + self.clear,
+            "transmit_covered": _mean_of(self.bent_covered, mean(self.bent), expression(0.0), mean(self.clear)),
+            "ior": ior,
+            "fresnel_ior": opaque_ior,
+        }
 
 
-def _rgb(color):
-    """A colour (3,) that the engine takes: finite, not negative."""
-    return tuple(float(c) for c in np.maximum(np.nan_to_num(color), 0.0))
+_SHARES = tuple(f.name for f in fields(Lobes))[:11]
+#: Members of the engine's material of the same name and meaning.
+_AS_THEY_ARE = (
+    "grazing",
+    "edge",
+    "multiscatter",
+    "roughness",
+    "transmit_roughness",
+    "diffuse_roughness",
+    "diffuse_covered",
+    "coat_roughness",
+    "coat_ior",
+    "coat_tint",
+    "normal",
+    "holdout",
+)
 
 
-def _at_most_one(value):
-    """A share that gives back no more light than comes in."""
-    return replace(value, rgb=tuple(np.minimum(value.rgb, 1.0)))
+def _diffuse(lobes):
+    return mean(lobes.diffuse) + mean(lobes.translucent)
+
+
+def _bent(lobes):
+    return mean(lobes.bent)
+
+
+def _coat(lobes):
+    return mean(lobes.coat)
+
+
+def _metal(lobes):
+    return mean(lobes.metal)
+
+
+#: The weight of one shader's number in the mean of two.
+_MEANS = {
+    "diffuse_roughness": _diffuse,
+    "diffuse_covered": _diffuse,
+    "roughness": lambda lobes: lobes.reflectance,
+    "edge": _metal,
+    "multiscatter": _metal,
+    "varnish_ior": lambda lobes: mean(lobes.varnish),
+    "ior": lambda lobes: mean(lobes.bent) + mean(lobes.glass),
+    "bent_covered": _bent,
+    "transmit_roughness": _bent,
+    "coat_roughness": _coat,
+    "coat_ior": _coat,
+    "coat_tint": _coat,
+    "normal": lambda lobes: _diffuse(lobes) + lobes.reflectance + _bent(lobes) + _coat(lobes),
+}
+
+
+def _same(a, b):
+    """Whether two expressions are one by their structure."""
+    return a is b or (isinstance(a, Literal) and isinstance(b, Literal) and a.value == b.value)
+
+
+def _mean_of(a, weight_a, b, weight_b):
+    if _same(a, b) or is_zero(weight_b):
+        return a
+    return b if is_zero(weight_a) else (a * weight_a + b * weight_b) / (weight_a + weight_b)
+
+
+def _look_different(a, b):
+    """Whether two mirrors differ in roughness for certain, and how much of each there is."""
+    values = (a.roughness, b.roughness, a.reflectance, b.reflectance)
+    if not all(map(is_constant, values)):
+        return False
+    rough, other, share, other_share = (value.value[0] for value in values)
+    return abs(rough - other) > _SAME_ROUGHNESS and min(share, other_share) > 0.0
+
+
+def _reflected(share, ior):
+    return share if is_zero(share) else mean(share) * normal_reflectance(ior)
 
 
 def normal_reflectance(ior):
     """Fresnel reflectance at normal incidence."""
-    return ((ior - 1.0) / (ior + 1.0)) ** 2
+    root = (expression(ior) - 1.0) / (expression(ior) + 1.0)
+    return root * root
 
 
 def ior_of_reflectance(f0):
     """The index of refraction above 1 whose reflectance at normal incidence is f0."""
-    root = float(np.sqrt(np.clip(f0, 0.0, 0.99)))
+    root = sqrt(clamped(f0, 0.0, 0.99))
     return (1.0 + root) / (1.0 - root)
 
 
 def conductor_reflectance(cosine, index, extinction):
-    """Unpolarised reflectance (3,) of a smooth metal of complex index `index` + i `extinction`, (3,) each (Born and
-    Wolf 14.2)."""
-    n, k = (np.maximum(np.asarray(x, np.float64), 0.0) for x in (index, extinction))
-    inside = np.sqrt((n + 1j * k) ** 2 - (1.0 - cosine**2) + 0j)
+    """Unpolarised reflectance (3,) of a smooth metal of complex index `index` + i `extinction` (Born and Wolf 14.2)."""
+    return call("optics_conductor", expression(cosine), maximum(index, 0.0), maximum(extinction, 0.0), fold=_conductor)
+
+
+def _conductor(cosine, index, extinction):
+    inside = np.sqrt((index + 1j * extinction) ** 2 - (1.0 - cosine**2) + 0j)
+    squared = (index + 1j * extinction) ** 2
     across = (cosine - inside) / (cosine + inside)
-    along = ((n + 1j * k) ** 2 * cosine - inside) / ((n + 1j * k) ** 2 * cosine + inside)
+    along = (squared * cosine - inside) / (squared * cosine + inside)
     return (np.abs(across) ** 2 + np.abs(along) ** 2) / 2.0
 
 
-def sharpness(roughness):
-    """Share of a lobe that is drawn as a mirror: 1 up to SHARP, 0 from BLUNT on, smooth between them."""
-    x = float(np.clip((BLUNT - roughness) / (BLUNT - SHARP), 0.0, 1.0))
-    return x * x * (3.0 - 2.0 * x)
+def metal(color, **numbers):
+    """A conductor that reflects `color` at normal incidence, more at grazing incidence, `edge` of that near 82
+    degrees."""
+    return Lobes(metal=color, grazing=_WHITE, **numbers)
 
 
-def phong_of(roughness):
-    """(weight, exponent) of the lights' highlight that looks like a microfacet lobe of this roughness.
-
-    Blinn's exponent is n = 2 / alpha^2 - 2 with alpha = roughness^2 (Walter et al. 2007). The angle to the mirror
-    direction is twice the one to the half vector, which makes Phong's exponent n / 4. The peak of pi D / 4, where
-    D = (n + 2) / 2 pi, is (n + 2) / 8 in units of a white diffuse surface.
-    """
-    alpha = max(float(roughness), 0.05) ** 2
-    blinn = max(2.0 / alpha**2 - 2.0, 0.0)
-    return (blinn + 2.0) / 8.0, max(blinn / 4.0, 1.0)
-
-
-def metal(color, roughness, edge=(1.0, 1.0, 1.0), multiscatter=False):
-    """A conductor that reflects `color` (a Value) at normal incidence, more at grazing incidence, `edge` of that near
-    82 degrees."""
-    edge = tuple(np.clip(edge, 0.0, 1.0).tolist())
-    white = Value((1.0, 1.0, 1.0))
-    return Lobes(metal=color, grazing=white, edge=edge, roughness=_unit(roughness), multiscatter=multiscatter)
-
-
-def mirror(color, roughness, multiscatter=False):
+def mirror(color, **numbers):
     """A surface that reflects the same share at all angles."""
-    return Lobes(mirror=color, roughness=_unit(roughness), multiscatter=multiscatter)
+    return Lobes(metal=color, grazing=color, **numbers)
 
 
-def dielectric_coat(tint, roughness, ior):
-    """The reflection of a dielectric surface."""
-    return Lobes(coat=tint, roughness=_unit(roughness), ior=ior)
+def varnished(lobes, tint, ior, roughness):
+    """Diffuse lobes under the surface of a dielectric, whose reflection is tinted."""
+    return replace(lobes, diffuse_covered=largest(tint), varnish=tint, varnish_ior=ior, roughness=roughness)
 
 
-def dielectric_body(tint, color, roughness, ior):
+def clear_body(tint, color, ior, roughness):
     """Glass: its reflection times `tint`, what goes through times `color`."""
-    rough = _unit(roughness)
-    return Lobes(coat=tint, glass=color, ior=ior, roughness=rough, transmit_roughness=rough)
-
-
-def _unit(number):
-    return float(np.clip(np.nan_to_num(number), 0.0, 1.0))
+    rough = {"roughness": roughness, "transmit_roughness": roughness}
+    return Lobes(glass=tint, bent=color, bent_covered=1.0, ior=ior, **rough)

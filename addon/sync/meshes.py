@@ -54,11 +54,12 @@ class MeshTriangles:
     dropped: int = 0
 
 
-def read_triangles(mesh, slot_count, uv_sources=(), keys=(), wanted=None):
+def read_triangles(mesh, slot_count, uv_maps=(), keys=(), wanted=None):
     """The `MeshTriangles` of an evaluated Blender mesh.
 
-    Their material is the slot, as Blender clamps it to `slot_count`. `uv_sources`: a `UvSource` or None for each
-    slot; empty for no uv at all. `keys`: of the attributes to read. `wanted` (faces,) bool: the faces; None for all.
+    Their material is the slot, as Blender clamps it to `slot_count`. `uv_maps`: the name of the uv map,
+    empty for the active one, or None for each slot; empty for no uv at all. `keys`: of the attributes to read.
+    `wanted` (faces,) bool: the faces; None for all.
     """
     corners, faces = _triangulation(mesh)
     if wanted is not None:
@@ -79,7 +80,7 @@ def read_triangles(mesh, slot_count, uv_sources=(), keys=(), wanted=None):
     columns |= _normals(mesh, corners, faces)
     slots = read_raw(mesh, "material_index", "FACE", "INT")
     material = np.clip(slots[faces], 0, slot_count - 1) if slots is not None else np.zeros(len(faces), np.int32)
-    columns |= _uvs(mesh, corners, material, uv_sources)
+    columns |= _uvs(mesh, corners, material, uv_maps)
     attributes = of_triangles(mesh, keys, corners, faces)
     return MeshTriangles(Triangles(material=material, attributes=attributes, **columns), dropped)
 
@@ -112,14 +113,13 @@ def _normals(mesh, corners, faces):
     return dict(zip(("n0", "n1", "n2"), of_triangle, strict=True))
 
 
-def _uvs(mesh, corners, material, uv_sources):
-    """Columns uv0, uv1, uv2 (n, 2): for each triangle the uv that its material's images take; 0 where it has no map."""
+def _uvs(mesh, corners, material, uv_maps):
+    """Columns uv0, uv1, uv2 (n, 2): for each triangle the uv that its material takes; 0 where it has no map."""
     uv = np.zeros((3, len(corners), 2), np.float32)
-    for source in {source for source in uv_sources if source is not None}:
-        of_corner = read_uv(mesh, source.map)
+    for name in {name for name in uv_maps if name is not None}:
+        of_corner = read_uv(mesh, name)
         if of_corner is None:
             continue
-        uses = np.array([other == source for other in uv_sources])
-        rows = uses[material]
-        uv[:, rows] = source.applied(of_corner)[corners[rows].T]
+        rows = np.array([other == name for other in uv_maps])[material]
+        uv[:, rows] = of_corner[corners[rows].T]
     return dict(zip(("uv0", "uv1", "uv2"), uv, strict=True))

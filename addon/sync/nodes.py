@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Following the links of a node tree: through reroutes, muted nodes and node groups, to what feeds a socket."""
 
+import re
 from dataclasses import dataclass
 
+_NUMBERED = re.compile(r"^\d+_")
 #: Outputs that only one engine uses are taken where there is no other.
 _TARGETS = ("ALL", "CYCLES", "EEVEE")
 
@@ -33,7 +35,31 @@ class Source:
     def input(self, name):
         """What feeds the input called or numbered `name` of this node, or None where the node has no such input."""
         socket = self.node.inputs[name] if isinstance(name, int) else self.node.inputs.get(name)
-        return None if socket is None else source_of(socket, self.groups)
+        return None if socket is None else self.input_of(socket)
+
+    def input_of(self, socket):
+        """What feeds an input socket of this node."""
+        return source_of(socket, self.groups)
+
+    @property
+    def name(self):
+        """The node's name, as the user knows it: Blender's flattened trees put a number before it."""
+        return _NUMBERED.sub("", self.node.name)
+
+    @property
+    def key(self):
+        """What tells this output of a node, in its groups, from all others."""
+        return (*self.node_key, self.output.identifier)
+
+    @property
+    def node_key(self):
+        """What tells the node, in its groups, from all others."""
+        return (*(group.name for group in self.groups), self.node.name)
+
+    @property
+    def socket_key(self):
+        """The same of the socket."""
+        return self.socket.as_pointer()
 
 
 def output_source(tree, socket_name):
@@ -47,8 +73,14 @@ def output_source(tree, socket_name):
 
 
 def source_of(socket, groups=()):
-    """Follow the link into `socket` to the node that makes its value."""
+    """Follow the link into `socket` to the node that makes its value. Where links go in a circle it is as if
+    nothing were linked."""
+    first, passed = Source(socket, groups=groups), set()
     while True:
+        place = (socket.as_pointer(), *(group.as_pointer() for group in groups))
+        if place in passed:
+            return first
+        passed.add(place)
         link = next((link for link in socket.links if link.is_valid and not link.is_muted), None)
         if link is None:
             return Source(socket, groups=groups)

@@ -10,6 +10,7 @@ from .attributes import parts_of
 from .compat import has_geometry_sets
 from .contents import SILENT, Contents
 from .instancing import copies_in
+from .light_linking import LightLinks
 from .pixel_sizes import PixelSizes
 from .placement import Placement, Stand, placed_matrices
 from .taken import materials_of
@@ -36,8 +37,9 @@ class ObjectSync:
     def __init__(self, scene, shadings, lights, reports, depsgraph, height, space=None):
         self._scene, self._shadings, self._lights, self._reports = scene, shadings, lights, reports
         self._override = depsgraph.view_layer.material_override
-        self._visibilities = Visibilities(depsgraph.view_layer)
         self._copies = copies_in(depsgraph, shown_in(space))
+        self._links = LightLinks(self._copies, reports)
+        self._visibilities = Visibilities(depsgraph.view_layer, self._links)
         self._contents = Contents(depsgraph, PixelSizes(scene.camera, height, self._copies), reports)
         self._assets = {}
         self._found = {}
@@ -48,7 +50,7 @@ class ObjectSync:
         for copies in self._copies:
             if copies.kind == "LIGHT":
                 for matrix in copies.matrices.astype(np.float64):
-                    self._lights.add(copies.obj, matrix)
+                    self._lights.add(copies.obj, matrix, self._links)
             elif copies.kind not in SILENT:
                 for asset, constants in self._assets_of(copies):
                     asset.entries.append((copies, constants))

@@ -5,10 +5,11 @@ Blender gives one point of one hair a call; 10,000 hairs of 9 points take about 
 """
 
 from array import array
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from . import strand_values
 from .attributes import randoms
 from .curve_sampling import CATMULL_ROM, ControlCurves, sample
 from .curves import Read
@@ -26,7 +27,7 @@ def strands_of_particles(obj, sampling, render, slot_count=1, keys=()):
     """The `ParticleHair` of each particle system of an evaluated object that shows hair as paths, in object space.
 
     `render`: the final picture, with the steps and children for it, else those of the viewport. `keys` of the
-    attributes to read: hairs have but a random number.
+    attributes to read: hairs have but those of Hair Info.
     """
     found, hairs = [], 0
     for modifier in obj.modifiers:
@@ -37,8 +38,12 @@ def strands_of_particles(obj, sampling, render, slot_count=1, keys=()):
         if settings.type == "HAIR" and settings.render_type == "PATH":
             slot = min(max(settings.material - 1, 0), slot_count - 1)
             points = _paths(obj, system, _numbers(system, settings, render), _point_count(settings, render))
-            samples = sample(_curves(points, settings), sampling)
+            curves = _curves(points, settings)
+            values = strand_values.of_points(keys, curves.points, curves.offsets, curves.radius)
+            samples = sample(replace(curves, attributes=values), sampling)
             of_hair = randoms(keys, len(points), hairs)
+            of_hair |= strand_values.of_curves(keys, curves.points, curves.offsets)
+            of_hair |= strand_values.of_roots(keys, obj.data, points[:, 0])
             read = Read.of(samples, system.name, material=slot, of_polylines=of_hair)
             found.append(ParticleHair(system.name, read))
             hairs += len(points)

@@ -3,9 +3,11 @@
 
 from dataclasses import dataclass, field
 
+from ..engine.film_options import DepthCue, Outlines
 from ..engine.scene import Scene
 from ..engine.settings import Settings
 from ..engine.timing import timed
+from .attributes import key_of
 from .camera import camera_of_render
 from .images import Images
 from .lights import Lights
@@ -13,6 +15,9 @@ from .object_sync import ObjectSync
 from .reports import Reports
 from .shading import Shadings
 from .world import read_world
+from .world_light import with_light
+
+_LEAST_FADE = 1e-4  # of a depth cue whose end was set before its start
 
 
 @dataclass
@@ -38,11 +43,11 @@ def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report, sp
         camera = camera_of_render(engine, depsgraph, width, height, reports=reports)
     if depsgraph.scene_eval.render.use_motion_blur:
         reports.warn("motion blur is not rendered")
-    scene = Scene(camera=camera)
-    images = Images(scene, reports)
+    scene = Scene(camera=camera, outline_attribute=outline_attribute(depsgraph.scene_eval))
+    images = Images(scene, depsgraph.scene_eval.frame_current)
     view_layer = depsgraph.view_layer_eval
     world = view_layer.world_override or depsgraph.scene_eval.world
-    scene.world = read_world(world, scene, images, reports)
+    scene.world = with_light(read_world(world, images, reports), world, scene.images)
     layers = tuple(owner for owner in (view_layer, depsgraph.scene_eval, world) if owner is not None)
     shadings = Shadings(scene, images, reports, layers)
     lights = Lights(scene, reports)
@@ -52,8 +57,17 @@ def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report, sp
         statistics.objects |= objects.read()
     with timed(statistics.seconds, "place"):
         objects.place()
-        shadings.finish()
     return scene
+
+
+def outline_attribute(scene):
+    """The key of the attribute that outlines go around, empty where they go around none."""
+    conic = scene.conic
+    if conic.use_outlines and conic.outline_around == "OBJECTS":
+        return key_of("object", "random")
+    if conic.use_outlines and conic.outline_around == "ATTRIBUTE":
+        return key_of("geometry", conic.outline_attribute)
+    return ""
 
 
 def sync_settings(scene, preview=False):
@@ -65,4 +79,32 @@ def sync_settings(scene, preview=False):
         weight_cutoff=conic.weight_cutoff,
         tinted_shadows=conic.shadows == "TINTED",
         film_transparent=scene.render.film_transparent,
+        flat_colors=conic.use_flat_colors,
+        depth_cue=_depth_cue(conic) if conic.use_depth_cue else None,
+        outlines=_outlines(conic) if conic.use_outlines else None,
+        world_light=conic.world_light,
+        use_ao=conic.use_ao,
+        ao_distance=conic.ao_distance,
+        ao_factor=conic.ao_factor,
+    )
+
+
+def _depth_cue(conic):
+    has_range = conic.depth_cue_range == "DISTANCES"
+    return DepthCue(
+        color=tuple(conic.depth_cue_color) if conic.depth_cue_into == "COLOR" else None,
+        start=conic.depth_cue_start if has_range else None,
+        end=max(conic.depth_cue_end, conic.depth_cue_start + _LEAST_FADE) if has_range else None,
+        strength=conic.depth_cue_strength,
+    )
+
+
+def _outlines(conic):
+    return Outlines(
+        color=tuple(conic.outline_color),
+        around="SHAPES" if conic.outline_around == "SHAPES" else "ATTRIBUTE",
+        width=conic.outline_width,
+        inner_width=conic.outline_inner_width,
+        crease_angle=conic.outline_crease_angle,
+        depth_step=conic.outline_depth_step / 100.0,
     )

@@ -1,33 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's materials as the engine's: node trees of the basic shaders with constants and images."""
+"""Blender's materials as the engine's."""
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
+from ..engine.expression import Parameter, attribute_keys, is_zero
+from ..engine.material_packing import expressions_of
 from ..engine.scene import Material
-from .attribute_nodes import AttributeNodes
 from .attributes import parts_of
-from .closures import principled, read_closure
-from .compat import has_geometry_sets, node_tree
+from .closures import principled, read_absorption, read_closure
+from .compat import flattened, has_geometry_sets
 from .keys import original_key
 from .lobes import Lobes
-from .made_attributes import attributes_of, make_attributes
 from .nodes import output_source
-from .textures import NodeReader
-from .values import Value
+from .tree_reader import TreeReader, deep_recursion
 
-WHITE = Value((1.0, 1.0, 1.0))
 DEFAULT = Material()  # Blender's grey, for a slot without material
 
 
 @dataclass(frozen=True)
 class Shading:
-    """A material of the scene: its number, the `UvSource` of its images, None where it has none, whether light goes
+    """A material of the scene: its number, the uv map that it takes, None where it takes none, whether light may go
     through it, and the keys of the attributes of Blender's data that it needs (see `attributes`)."""
 
     index: int
-    uv: object = None
+    uv_map: str | None = None
     name: str = ""
     transmits: bool = False
     attributes: tuple = ()
@@ -41,9 +37,7 @@ class Shadings:
 
     def __init__(self, scene, images, reports, layers=()):
         self._scene, self._images, self._reports, self._layers = scene, images, reports, layers
-        self._by_key = {}
-        self._sheets = {}
-        self._made, self._opacities = {}, []
+        self._by_key, self._sheets = {}, {}
 
     def of(self, material):
         """The `Shading` of a Blender material, or of None: an empty slot, or one whose material was deleted."""
@@ -61,34 +55,25 @@ class Shadings:
             self._sheets[shading.index] = replace(shading, index=self._scene.add_material(material))
         return self._sheets[shading.index]
 
-    def finish(self):
-        """Once all objects stand in the scene: make the attributes that materials compute from those of the data."""
-        sheets = {number: (number, sheet.index) for number, sheet in self._sheets.items()}
-        opacities = [(alpha, name, sheets.get(number, (number,))) for alpha, name, number in self._opacities]
-        make_attributes(self._scene, self._made, opacities, self._reports)
-
     def _read(self, material):
         if material is None:
-            return Shading(self._scene.add_material(DEFAULT))
-        attributes = AttributeNodes(material, self._layers)
-        reader = NodeReader(f"material {material.name!r}", self._images, self._reports, attributes=attributes)
-        read = read_material(material, reader)
-        reader.finish()
-        index = self._scene.add_material(read)
-        self._made |= reader.made
-        self._opacities += [(alpha, material.name, index) for alpha in reader.opacities]
-        keys = _needed(attributes_of(read), reader)
+            return Shading(self._scene.add_material(DEFAULT), attributes=self._keys(set()))
+        user = f"material {material.name!r}"
+        reader = TreeReader(user, material, "MATERIAL", self._images, self._reports, self._layers)
+        with deep_recursion():
+            read = read_material(material, reader)
+            reader.finish()
+        keys = self._keys(attribute_keys(expressions_of(read)))
         if any(parts_of(key)[0] == "instancer" for key in keys) and not has_geometry_sets():
             reader.warn(
                 "attributes of instances are rendered from Blender 4.5 on; properties of objects are used instead"
             )
-        return Shading(index, reader.uv, material.name, max(read.transmit) > 0.0, keys)
+        transmits = not is_zero(read.transmit)
+        return Shading(self._scene.add_material(read), reader.uv_map, material.name, transmits, keys)
 
-
-def _needed(keys, reader):
-    """The keys, sorted, of the attributes of the data from which those of a material are made."""
-    expressions = [*reader.opacities, *(reader.made[key] for key in keys if key in reader.made)]
-    return tuple(sorted({key for key in keys if key not in reader.made}.union(*(e.keys for e in expressions))))
+    def _keys(self, needed):
+        """The attributes to read, sorted: those that a material needs and that of the scene's outlines."""
+        return tuple(sorted({*needed, self._scene.outline_attribute} - {""}))
 
 
 def read_material(material, reader):
@@ -97,49 +82,40 @@ def read_material(material, reader):
         _shaded(material, reader),
         cull_back=material.use_backface_culling,
         cull_back_shadow=material.use_backface_culling_shadow,
+        emission=_emission_sampling(material),
     )
 
 
+def _emission_sampling(material):
+    """Which sides of what glows light other things: a setting of Cycles, which may be switched off."""
+    cycles = getattr(material, "cycles", None)
+    sampling = cycles.emission_sampling if cycles is not None else "AUTO"
+    return {"AUTO": "BOTH", "FRONT_BACK": "BOTH"}.get(sampling, sampling)
+
+
 def _shaded(material, reader):
-    tree = node_tree(material)
+    tree, _kept = flattened(material)
     if tree is None:
-        return _without_nodes(material).material()
+        return _without_nodes(material)
     surface = output_source(tree, "Surface")
     if surface is None:
         reader.warn("it has no output node; black is used instead")
         return Lobes().material()
     displacement = output_source(tree, "Displacement")
     if displacement is not None and displacement.node is not None:
-        reader.warn(f"displacement by node {displacement.node.name!r} is not rendered")
+        reader.warn(f"displacement by node {displacement.name!r} is not rendered")
     volume = output_source(tree, "Volume")
     if surface.node is None and volume is not None and volume.node is not None:
-        lobes = Lobes(clear=WHITE)  # a body of volume alone has no surface
+        lobes = Lobes(clear=1.0)  # a body of volume alone has no surface
     else:
         lobes = read_closure(surface, reader)
-    if lobes.blurred:
-        reader.warn(
-            "its mix of an image or attribute with another or with a color is rendered as the stronger one, brightened"
-        )
-    if lobes.one_roughness:
-        reader.warn("its reflections of different roughness are rendered with the roughness of the strongest")
-    return lobes.material(_absorption(volume, reader))
+    return lobes.material(read_absorption(volume, reader))
 
 
 def _without_nodes(material):
     return principled(
-        Value(tuple(material.diffuse_color)[:3]),
-        metallic=material.metallic,
-        roughness=material.roughness,
-        specular=material.specular_intensity,
-    )
-
-
-def _absorption(source, reader):
-    """Beer-Lambert coefficient (3,) of what is linked to the Volume socket, as Cycles: density * (1 - colour)."""
-    if source is None or source.node is None:
-        return (0.0, 0.0, 0.0)
-    if source.type != "VOLUME_ABSORPTION":
-        reader.left_out(source, "its volume")
-        return (0.0, 0.0, 0.0)
-    color = reader.color(source.input("Color")).average
-    return np.maximum(reader.number(source.input("Density")) * (1.0 - color), 0.0)
+        Parameter(tuple(material.diffuse_color)[:3]),
+        metallic=Parameter(material.metallic),
+        roughness=Parameter(material.roughness),
+        specular=Parameter(material.specular_intensity),
+    ).material()

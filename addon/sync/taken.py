@@ -6,7 +6,7 @@ from hashlib import blake2b
 
 import numpy as np
 
-from .attributes import of_mesh, of_primitives, parts_of
+from .attributes import of_mesh, of_primitives, title_of
 from .keys import data_key
 from .meshes import read_mesh
 from .recognise import Recognition, recognise
@@ -105,8 +105,7 @@ def taken_as(primitive, mesh, shadings, recognise_setting, recognitions):
     constants = _constants(mesh, shadings)
     varying = next((key for key, value in constants.items() if value is None), None)
     if varying is not None:
-        name = parts_of(varying)[1] or "Color"
-        return Taken("MESH", f"mesh: a material uses the attribute {name!r}, which is not the same all over it")
+        return Taken("MESH", f"mesh: a material uses {title_of(varying)}")
     return Taken(recognition.kind, recognition.reason, recognitions.shape(recognition), constants=constants)
 
 
@@ -131,20 +130,16 @@ def _chosen(primitive, mesh, shadings, recognitions):
 
 
 def _uv_map(shadings):
-    """The uv map that the images of the materials need; None where they need none."""
-    return next((shading.uv.map for shading in shadings if shading.uv is not None), None)
+    """The uv map that the materials take; None where they need none."""
+    return next((shading.uv_map for shading in shadings if shading.uv_map is not None), None)
 
 
 def _uv_conflict(recognition: Recognition, shadings):
-    """Why images by uv keep a recognised mesh a mesh, or an empty string."""
+    """Why a material's uv keeps a recognised mesh a mesh, or an empty string."""
     first = _uv_map(shadings)
     for part in recognition.parts:
         shading = shadings[min(part.material, len(shadings) - 1)]
-        if shading.uv is None:
-            continue
-        if not shading.uv.plain:
-            return f"mesh: material {shading.name!r} moves the uv map by a Mapping node"
-        if shading.uv.map != first or not part.uv.matches:
+        if shading.uv_map is not None and (shading.uv_map != first or not part.uv.matches):
             return f"mesh: material {shading.name!r} uses the uv map, which is not the {recognition.kind.lower()}'s own"
     return ""
 

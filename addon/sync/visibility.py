@@ -8,10 +8,10 @@ _RAYS = tuple((f"visible_{ray.name.lower()}", int(ray)) for ray in Visibility.AL
 
 
 class Visibilities:
-    """The `Visibility` of copies in a view layer."""
+    """The `Visibility` of copies in a view layer; `links`: the `LightLinks`."""
 
-    def __init__(self, view_layer):
-        self._view_layer = view_layer
+    def __init__(self, view_layer, links):
+        self._view_layer, self._links = view_layer, links
         # Whether objects can be set apart by their collections: asking each object takes time.
         self._by_collections = any(
             layer.holdout or layer.indirect_only for layer in _and_children(view_layer.layer_collection)
@@ -24,9 +24,9 @@ class Visibilities:
         Rays see what both let them see; a holdout and what the camera sees only indirectly are so by the root, alone or
         by its collections; a shadow catcher is so by either.
         """
-        bits, catches = _seen_by(obj), obj.is_shadow_catcher
+        bits, catches = seen_by(obj), obj.is_shadow_catcher
         if root != obj:
-            bits &= _seen_by(root)
+            bits &= seen_by(root)
             catches = catches or root.is_shadow_catcher
         holdout = root.is_holdout
         if self._by_collections:
@@ -36,6 +36,7 @@ class Visibilities:
                 bits &= ~int(Visibility.CAMERA)
         if bits:
             bits |= (Visibility.HOLDOUT if holdout else 0) | (Visibility.SHADOW_CATCHER if catches else 0)
+            bits |= self._links.groups_of(obj, root)
         if bits not in self._made:
             self._made[bits] = Visibility(bits)
         return self._made[bits]
@@ -47,7 +48,7 @@ def _and_children(layer):
         yield from _and_children(child)
 
 
-def _seen_by(obj):
+def seen_by(obj):
     """The rays, bits, that an object's own flags let see it."""
     bits = _ALL
     for flag, ray in _RAYS:

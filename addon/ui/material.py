@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panel of a material's settings beside its nodes."""
+"""The panel of a material's settings beside its nodes, and the menu of presets below its slots."""
 
 import bpy
 
-from .base import PropertiesPanel
+from .base import ENGINE, PropertiesPanel
 
 
 class CONIC_MATERIAL_PT_settings(PropertiesPanel, bpy.types.Panel):
@@ -23,4 +23,19 @@ class CONIC_MATERIAL_PT_settings(PropertiesPanel, bpy.types.Panel):
         column.prop(material, "use_backface_culling_shadow", text="Shadow")
 
 
-register, unregister = bpy.utils.register_classes_factory((CONIC_MATERIAL_PT_settings,))
+def _draw_presets(self, context):
+    if context.engine == ENGINE and context.object is not None:
+        self.layout.menu("CONIC_MT_material_presets", text="Conic Presets", icon="PRESET")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CONIC_MATERIAL_PT_settings,))
+
+
+def register():
+    _register_classes()
+    bpy.types.EEVEE_MATERIAL_PT_context_material.append(_draw_presets)
+
+
+def unregister():
+    bpy.types.EEVEE_MATERIAL_PT_context_material.remove(_draw_presets)
+    _unregister_classes()

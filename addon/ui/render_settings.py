@@ -49,17 +49,6 @@ class CONIC_RENDER_PT_shapes(RenderPanel, bpy.types.Panel):
         column.prop(settings, "curve_tolerance" if settings.curve_sampling == "PIXELS" else "curve_steps")
 
 
-class CONIC_RENDER_PT_film(RenderPanel, bpy.types.Panel):
-    bl_label = "Film"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        layout.prop(context.scene.render, "film_transparent", text="Transparent")
-
-
 register, unregister = bpy.utils.register_classes_factory(
-    (CONIC_RENDER_PT_sampling, CONIC_RENDER_PT_light_paths, CONIC_RENDER_PT_shapes, CONIC_RENDER_PT_film)
+    (CONIC_RENDER_PT_sampling, CONIC_RENDER_PT_light_paths, CONIC_RENDER_PT_shapes)
 )

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
+from addon.engine.expression import OPERATORS, Call, Parameter, as_type, expression, in_order, is_constant
+from addon.engine.scene import Material
 from addon.sync.scene_sync import sync_scene
 
 
@@ -27,6 +29,40 @@ def sync(width=64, height=48):
         bpy.context.evaluated_depsgraph_get(), width, height, report=lambda *message: synced.messages.append(message)
     )
     return synced
+
+
+@dataclass(frozen=True)
+class Constants:
+    """The members of an engine Material as numbers and colours, as `material.diffuse`; what varies is an Expression."""
+
+    material: object
+
+    def __getattr__(self, name):
+        value = getattr(self.material, name)
+        if not is_constant(value):
+            return value
+        default = getattr(Material(), name)
+        numbers = as_type(value, "vec3" if isinstance(default, tuple) else "float").value
+        return numbers if len(numbers) == 3 else type(default)(numbers[0])
+
+
+def value_of(value, **functions):
+    """An Expression in float64 (n,). `functions`: what functions of GLSL give, by their names, as numbers."""
+    known = {}
+    for each in in_order((expression(value),)):
+        inputs = [known[id(x)] for x in getattr(each, "inputs", ())]
+        if not isinstance(each, Call):
+            result = getattr(each, "value", None)
+        elif each.name in functions:
+            result = as_type(Parameter(functions[each.name]), each.type).value
+        elif each.name not in OPERATORS:
+            result = None  # what only such functions take
+        else:
+            twin = OPERATORS[each.name].twin
+            result = twin(*map(np.array, inputs)) if twin else inputs[0]  # those without one are conversions
+            result = as_type(Parameter(result), each.type).value
+        known[id(each)] = result
+    return np.array(known[id(each)])
 
 
 def link(data, name="object", **settings):

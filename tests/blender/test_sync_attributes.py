@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
+from addon.engine.expression import Expression, attribute_keys, is_constant
 from addon.engine.scene import Scene
 from addon.sync import attributes
 from addon.sync.images import Images
@@ -194,6 +195,12 @@ def shading(build, layers=()):
     return scene.materials[read.index], read, messages
 
 
+def constant(value):
+    """A colour of a material that is the same everywhere."""
+    assert is_constant(value)
+    return tuple(np.broadcast_to(value.value, 3).tolist())
+
+
 def of_output(tree, output, kind, name="Color", **settings):
     """An Emission of an output of a node."""
     emission = node(tree, "Emission", output.inputs["Surface"])
@@ -225,10 +232,10 @@ def of_output(tree, output, kind, name="Color", **settings):
 )
 def test_nodes_that_read_attributes(kind, name, settings, key):
     read, made, messages = shading(lambda tree, output: of_output(tree, output, kind, name, **settings))
-    assert read.glow_attribute == key and read.glow == (1.0, 1.0, 1.0)
+    assert attribute_keys((read.glow,)) == {key} and made.attributes == (key,)
     unknown = key.startswith("instancer") and bpy.app.version < (4, 5, 0)
     assert len(messages) == unknown and all("from Blender 4.5 on" in message for message in messages)
-    assert made.attributes == (key,) and read.diffuse_attribute == ""
+    assert not isinstance(read.diffuse, Expression) or is_constant(read.diffuse)
     assert attributes.key_of(*attributes.parts_of(key)) == key
 
 
@@ -242,10 +249,10 @@ def test_material_index_and_properties_of_the_view_layer_are_constants():
 
     bpy.context.scene["tint"] = (0.1, 0.2, 0.3)
     layers = bpy.context.view_layer, bpy.context.scene
-    assert shading(index)[0].glow == (5.0, 5.0, 5.0)
+    assert constant(shading(index)[0].glow) == (5.0, 5.0, 5.0)
     read, made, messages = shading(of_layer, layers)
-    assert read.glow == pytest.approx((0.1, 0.2, 0.3)) and made.attributes == () and not messages
-    assert shading(of_layer)[0].glow == (0.0, 0.0, 0.0), "a property that is not there is 0"
+    assert constant(read.glow) == pytest.approx((0.1, 0.2, 0.3)) and made.attributes == () and not messages
+    assert constant(shading(of_layer)[0].glow) == (0.0, 0.0, 0.0), "a property that is not there is 0"
 
 
 def test_a_property_of_the_view_layer_that_is_not_there_in_a_scene_without_a_world():
@@ -257,7 +264,7 @@ def test_a_property_of_the_view_layer_that_is_not_there_in_a_scene_without_a_wor
     add_camera()
     bpy.context.scene.world = None
     (read,) = sync().scene.materials
-    assert read.glow == (0.0, 0.0, 0.0)
+    assert constant(read.glow) == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("exponent", [100.0, 1000.0])
@@ -267,7 +274,7 @@ def test_a_constant_beyond_float32_is_0(exponent):
         power.operation = "EXPONENT"
         power.inputs[0].default_value = exponent
 
-    assert shading(huge)[0].glow == (0.0, 0.0, 0.0)
+    assert constant(shading(huge)[0].glow) == (0.0, 0.0, 0.0)
 
 
 def mixed(tree, output, blend, factor=1.0):
@@ -284,46 +291,18 @@ def paint(tree, to, name="paint"):
     node(tree, "Attribute", to, output="Color").attribute_name = name
 
 
-def test_attribute_times_an_image():
+@pytest.mark.parametrize("blend", ("MULTIPLY", "ADD", "MIX"))
+def test_an_attribute_an_image_and_another_attribute_are_mixed(blend):
     def build(tree, output):
-        first, second = mixed(tree, output, "MULTIPLY")
+        first, second = mixed(tree, output, blend, 0.5)
         paint(tree, first)
-        node(tree, "TexImage", second).image = image(np.full((2, 2, 4), 0.5), float_buffer=True)
+        inner = node(tree, "MixRGB", second)
+        paint(tree, inner.inputs[1], "other")
+        node(tree, "TexImage", inner.inputs[2]).image = image(np.full((2, 2, 4), 0.5), float_buffer=True)
 
     read, made, messages = shading(build)
-    assert read.diffuse_attribute == "geometry:paint" and read.diffuse_image == 0 and read.diffuse == (1.0,) * 3
-    assert made.uv is not None and not messages
-
-
-def test_attribute_plus_an_image_is_reported():
-    def build(tree, output):
-        first, second = mixed(tree, output, "ADD")
-        paint(tree, first)
-        node(tree, "TexImage", second).image = image(np.full((2, 2, 4), 0.5), float_buffer=True)
-
-    _, _, messages = shading(build)
-    assert len(messages) == 1 and "image or attribute" in messages[0]
-
-
-def test_factor_zero_leaves_the_attribute_itself():
-    def build(tree, output):
-        first, _ = mixed(tree, output, "MULTIPLY", 0.0)
-        paint(tree, first)
-
-    read, made, messages = shading(build)
-    assert read.diffuse_attribute == "geometry:paint" == made.attributes[0] and not messages
-
-
-def test_two_attributes_are_multiplied():
-    def build(tree, output):
-        first, second = mixed(tree, output, "MULTIPLY")
-        paint(tree, first)
-        paint(tree, second, "other")
-
-    read, made, messages = shading(build)
-    assert made.attributes == ("geometry:other", "geometry:paint") and not messages
-    again, *_ = shading(build)
-    assert read.diffuse_attribute == again.diffuse_attribute and read.diffuse_attribute.startswith("made:")
+    assert attribute_keys((read.diffuse,)) == {"geometry:paint", "geometry:other"} == set(made.attributes)
+    assert made.uv_map == "" and not messages
 
 
 def test_attribute_through_groups_and_reroutes():
@@ -338,20 +317,18 @@ def test_attribute_through_groups_and_reroutes():
         principled = node(tree, "BsdfPrincipled", output.inputs["Surface"], Metallic=1.0, Roughness=0.0)
         tree.links.new(reroute.outputs[0], principled.inputs["Base Color"])
 
-    read, made, messages = shading(build)
-    assert read.reflect_attribute == "geometry:paint" == made.attributes[0] and not messages
+    _, made, messages = shading(build)
+    assert made.attributes == ("geometry:paint",) and not messages
 
 
-def test_attributes_as_numbers_are_named_in_one_message():
+def test_attributes_as_numbers():
     def build(tree, output):
         principled = node(tree, "BsdfPrincipled", output.inputs["Surface"], Roughness=0.3)
         made = node(tree, "Attribute", principled.inputs["Roughness"], output=2)
         made.attribute_name = "paint"
-        tree.links.new(made.outputs[2], principled.inputs["Metallic"])
 
-    _, made, messages = shading(build)
-    assert len(messages) == 1 and "of Metallic and the value 0.3 of Roughness are used instead" in messages[0]
-    assert made.attributes == () and "'stuff'" in messages[0] and "'Attribute'" in messages[0]
+    read, made, messages = shading(build)
+    assert attribute_keys((read.roughness,)) == {"geometry.fac:paint"} == set(made.attributes) and not messages
 
 
 def test_ambient_occlusion_leaves_the_color():
@@ -361,7 +338,7 @@ def test_ambient_occlusion_leaves_the_color():
         paint(tree, of_output(tree, output, "AmbientOcclusion").inputs["Color"])
 
     read, _, messages = shading(build)
-    assert read.glow_attribute == "geometry:paint"
+    assert attribute_keys((read.glow,)) == {"geometry:paint"}
     assert len(messages) == 1 and "'Ambient Occlusion' is not rendered; its color without occlusion" in messages[0]
 
 
@@ -377,7 +354,7 @@ def test_backface_culling(back, shadow):
     assert (read.cull_back, read.cull_back_shadow) == (back, shadow)
 
 
-def test_lights_and_worlds_have_no_attributes():
+def test_a_world_has_no_attributes():
     add_camera()
     quad()
     world = bpy.data.worlds.new("sky")
@@ -386,4 +363,42 @@ def test_lights_and_worlds_have_no_attributes():
         world.use_nodes = True
     background = next(n for n in world.node_tree.nodes if n.type == "BACKGROUND")
     node(world.node_tree, "ObjectInfo", background.inputs["Color"], output="Color")
-    assert len(sync().warnings("'sky'", "'Object Info' is not rendered")) == 1
+    synced = sync()
+    assert not attribute_keys((synced.scene.world.color,)) and not synced.messages
+
+
+@pytest.mark.parametrize(
+    ("kind", "output", "instead"),
+    [
+        ("Wireframe", "Fac", "0"),
+        ("Bevel", "Normal", "its normal without bevel"),
+        ("NewGeometry", "Pointiness", "the pointiness 0.5"),
+        ("ParticleInfo", "Age", "0"),
+        ("LightPath", "Glossy Depth", "the ray depth for Glossy Depth"),
+    ],
+)
+def test_what_is_used_instead_is_named_once(kind, output, instead):
+    def build(tree, out):
+        made = of_output(tree, out, kind, output)
+        tree.links.new(made.outputs[output], tree.nodes["Emission"].inputs["Strength"])
+
+    _, _, messages = shading(build)
+    assert len(messages) == 1 and "'stuff'" in messages[0] and messages[0].endswith(f"{instead} is used instead")
+
+
+def test_parts_of_a_mesh_have_a_random_number_each():
+    mesh = mesh_of([*POINTS, (9, 0, 0), (9, 1, 0), (8, 0, 0)], [*FACES, (5, 6, 7)])
+    ((key, values, domain),) = attributes.of_elements(mesh, ("island:",))
+    assert key == "island:" and domain == "POINT" and ((values >= 0.0) & (values <= 1.0)).all()
+    assert len(np.unique(values[:5, 0])) == len(np.unique(values[5:, 0])) == 1 and values[0, 0] != values[5, 0]
+
+
+def test_generated_coordinates_of_a_deformed_mesh_are_those_before():
+    mesh = mesh_of(POINTS, FACES)
+    obj = link(mesh, "bent")
+    keys = ("generated:scale", "generated:offset")
+    depsgraph = bpy.context.evaluated_depsgraph_get
+    read = attributes.of_texture_space(obj.evaluated_get(depsgraph()).data, keys)
+    low, high = (np.array(corner) * read[keys[0]][:3] + read[keys[1]][:3] for corner in ((0, 0, 0), (2, 1, 0)))
+    np.testing.assert_allclose((low[:2], high[:2]), ((0, 0), (1, 1)), atol=1e-6)
+    assert not list(attributes.of_elements(obj.evaluated_get(depsgraph()).data, keys))

@@ -72,18 +72,15 @@ def test_all_flat_mesh_has_no_normals():
     assert not triangles_of(sync().scene.instances[0]).n0.any()
 
 
-def textured(name, uv_map=None, **mapping):
-    """A material with an image by the active uv map, one by name, or one moved by a Mapping node."""
+def textured(name, uv_map=None):
+    """A material with an image by the active uv map, or one by name."""
     made, tree, output = material(name)
     picture = node(tree, "TexImage")
     picture.image = image(np.ones((2, 2, 4)))
     node(tree, "BsdfDiffuse", output.inputs["Surface"])
     tree.links.new(picture.outputs["Color"], tree.nodes["Diffuse BSDF"].inputs["Color"])
-    vector = picture.inputs["Vector"]
-    if mapping:
-        vector = node(tree, "Mapping", vector, **mapping).inputs["Vector"]
     if uv_map:
-        node(tree, "UVMap", vector).uv_map = uv_map
+        node(tree, "UVMap", picture.inputs["Vector"]).uv_map = uv_map
     return made
 
 
@@ -110,17 +107,6 @@ def test_uv_of_a_named_map():
     obj.data.materials.append(textured("a", "other"))
     _, uv = uv_by_position(triangles_of(sync().scene.instances[0]))
     np.testing.assert_allclose(uv, 0.25)
-
-
-def test_uv_through_a_mapping_node():
-    add_camera()
-    obj = quad()
-    obj.data.materials.append(
-        textured("a", Location=(0.5, 0.25, 0.0), Rotation=(0.0, 0.0, np.pi / 2), Scale=(2.0, 3.0, 1.0))
-    )
-    points, uv = uv_by_position(triangles_of(sync().scene.instances[0]))
-    expected = np.stack([0.5 - 3.0 * points[:, 1], 0.25 + 2.0 * points[:, 0]], axis=1)
-    np.testing.assert_allclose(uv, expected, atol=1e-6)
 
 
 def test_each_slot_takes_its_own_uv():

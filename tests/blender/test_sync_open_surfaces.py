@@ -122,4 +122,4 @@ def test_points_of_glass_are_bodies():
     scene = sync().scene
     ((_, spheres),) = scene.instances[0].geometry.kinds()
     made = scene.materials[scene.instances[0].materials[0]]
-    assert spheres.kind == "sphere" and max(made.transmit) > 0.0 and made.bounds_body
+    assert spheres.kind == "sphere" and max(made.transmit.value) > 0.0 and made.bounds_body

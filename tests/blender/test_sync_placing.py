@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
+from addon.engine.expression import attribute_keys, expression
 from addon.sync import dupli_iterator
 from addon.sync.objects import describe
 from addon.sync.scene_sync import SyncStatistics, sync_scene
@@ -196,12 +197,12 @@ def test_nested_geometry_has_the_materials_of_its_data():
     ((_, triangles),) = instances.geometry.kinds()
     shown = {instances.materials[slot] for slot in triangles.material}
     assert len(instances.materials) == 2, "Blender's cube brings an empty slot along"
-    assert [scene.materials[number].glow_attribute for number in shown] == ["geometry:x"]
+    assert [attribute_keys([scene.materials[number].glow]) for number in shown] == [{"geometry:x"}]
     for _ in range(2):
         host.data.materials.append(None)
     host.material_slots[1].link, host.material_slots[1].material = "OBJECT", paint
     scene = sync().scene
-    assert not scene.materials[scene.instances[0].materials[1]].glow_attribute
+    assert not attribute_keys([expression(scene.materials[scene.instances[0].materials[1]].glow)])
 
 
 def test_what_cannot_be_placed_is_reported_once_with_its_number():

@@ -83,7 +83,7 @@ def test_each_point_has_its_slot():
         paint(obj, made)
     synced = sync()
     instances, spheres = spheres_of(synced.scene)
-    glow = [synced.scene.materials[instances.materials[slot]].glow[:2] for slot in spheres.material]
+    glow = [synced.scene.materials[instances.materials[slot]].glow.value[:2] for slot in spheres.material]
     assert glow == [(0.0, 1.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.0)]
 
 

@@ -1,16 +1,34 @@
 """The interface: settings that are promises, panels shown for Conic, and that nothing of it stays behind."""
 
+import math
+import re
+from pathlib import Path
 from types import SimpleNamespace
 
 import bpy
 import pytest
 
 from addon import statistics
-from addon.ui import light, material, object_shape, object_visibility, render_settings, standard_panels
+from addon.ui import (
+    film,
+    film_presets,
+    light,
+    material,
+    object_shape,
+    object_visibility,
+    render_settings,
+    standard_panels,
+    world_light,
+)
 from addon.ui import statistics as statistics_panel
 from tests.blender.building import link
 
-RENDER_PANELS = [panel for name, panel in vars(render_settings).items() if name.startswith("CONIC_")]
+RENDER_PANELS = [
+    panel
+    for module in (render_settings, film, world_light)
+    for name, panel in vars(module).items()
+    if name.startswith("CONIC_RENDER_PT_")
+]
 
 DEFAULTS = {
     "samples": 16,
@@ -22,6 +40,33 @@ DEFAULTS = {
     "curve_sampling": "PIXELS",
     "curve_tolerance": 0.25,
     "curve_steps": 8,
+    "world_light": "SAMPLED",
+    "use_ao": False,
+    "ao_distance": 1.0,
+    "ao_factor": 1.0,
+    "use_flat_colors": False,
+    "use_depth_cue": False,
+    "depth_cue_into": "BACKGROUND",
+    "depth_cue_color": (1.0, 1.0, 1.0),
+    "depth_cue_strength": 0.8,
+    "depth_cue_range": "SCENE",
+    "depth_cue_start": 5.0,
+    "depth_cue_end": 25.0,
+    "use_outlines": False,
+    "outline_around": "SHAPES",
+    "outline_attribute": "chain_id",
+    "outline_color": (0.0, 0.0, 0.0, 1.0),
+    "outline_width": 1.5,
+    "outline_inner_width": 1.0,
+    "outline_crease_angle": math.radians(40.0),
+    "outline_depth_step": 1.0,
+}
+#: Choices by which more settings are shown than else.
+MORE = {
+    "curve_sampling": "FIXED",
+    "depth_cue_into": "COLOR",
+    "depth_cue_range": "DISTANCES",
+    "outline_around": "ATTRIBUTE",
 }
 
 
@@ -49,9 +94,15 @@ class Layout:
 
 
 def draw(panel, **context):
-    """What a panel shows."""
-    layout = Layout()
-    panel.draw(SimpleNamespace(layout=layout), SimpleNamespace(**context))
+    """What a panel shows, its header included."""
+    layout, context = Layout(), SimpleNamespace(**context)
+    shown = SimpleNamespace(layout=layout)
+    for name in ("option", "draw_settings"):
+        if hasattr(panel, name):
+            setattr(shown, name, getattr(panel, name).__get__(shown) if name == "draw_settings" else panel.option)
+    for draws in (getattr(panel, "draw_header", None), panel.draw):
+        if draws:
+            draws(shown, context)
     return layout
 
 
@@ -62,7 +113,9 @@ def conic_panels():
 
 def test_settings_have_the_promised_names_and_defaults():
     settings = bpy.context.scene.conic
-    assert {name: getattr(settings, name) for name in DEFAULTS} == pytest.approx(DEFAULTS)
+    for name, default in DEFAULTS.items():
+        value = getattr(settings, name)
+        assert (tuple(value) if isinstance(default, tuple) else value) == pytest.approx(default), name
     own = {p.identifier for p in settings.bl_rna.properties} - {"rna_type", "name"}
     assert own == set(DEFAULTS)
 
@@ -119,8 +172,9 @@ def test_render_panels_show_settings(panel):
 
 def test_render_panels_show_every_setting():
     shown = set()
-    for sampling in ("PIXELS", "FIXED"):
-        bpy.context.scene.conic.curve_sampling = sampling
+    for choices in ({}, MORE):
+        for name, choice in choices.items():
+            setattr(bpy.context.scene.conic, name, choice)
         shown |= {name for panel in RENDER_PANELS for name in draw(panel, scene=bpy.context.scene).shown}
     assert shown >= set(DEFAULTS) | {"film_transparent"}
 
@@ -288,3 +342,26 @@ def test_nothing_stays_behind_and_it_can_come_back(registered):
             registered.register()
     assert conic_panels() == before and len(before) >= 6
     assert bpy.context.scene.conic.samples == 16
+
+
+def test_film_presets_are_found_and_set_only_what_a_preset_keeps():
+    """What a preset sets are settings that there are, and that one made by a user holds too."""
+    (folder,) = bpy.utils.preset_paths(film_presets.CONIC_PT_film_presets.preset_subdir)
+    kept = {value.partition(".")[2] for value in film_presets.CONIC_OT_film_preset_add.preset_values}
+    files = sorted(Path(folder).glob("*.py"))
+    assert [file.stem for file in files] == ["CAD", "goodsell", "molecule", "photo"]
+    for file in files:
+        names = set(re.findall(r"^(?:conic|render)\.(\w+) =", file.read_text(), re.MULTILINE))
+        assert names and names <= kept, file
+        bpy.ops.script.execute_preset(filepath=str(file), menu_idname="CONIC_PT_film_presets")
+        assert bpy.context.scene.conic.use_outlines == (file.stem != "photo")
+
+
+def test_a_preset_of_the_film_is_kept_and_comes_back(tmp_path, monkeypatch):
+    conic = bpy.context.scene.conic
+    conic.use_outlines, conic.outline_width = True, 3.0
+    monkeypatch.setattr(bpy.utils, "user_resource", lambda kind, path="", create=False: str(tmp_path))
+    assert bpy.ops.render.conic_film_preset_add(name="Mine") == {"FINISHED"}
+    conic.use_outlines, conic.outline_width = False, 1.0
+    bpy.ops.script.execute_preset(filepath=str(tmp_path / "Mine.py"), menu_idname="CONIC_PT_film_presets")
+    assert conic.use_outlines and conic.outline_width == 3.0

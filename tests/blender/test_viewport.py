@@ -81,6 +81,7 @@ def view():
     world.node_tree.nodes["Background"].inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
     bpy.context.scene.world = world
     bpy.context.scene.conic.preview_samples = 2
+    world.cycles_visibility.diffuse = False  # it lights nothing
     view = View()
     yield view
     vars(view).clear()  # what the GPU holds goes before Blender does

@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from addon.engine import LightKind, SceneError
+from addon.engine.material_packing import expressions_of
 
 _FAR = 1e5  # where a sun stands
 _NEAR = 1e-3  # fade_distance: far below any distance to a light, so that 2 / (1 + (d / f)^2) is 2 f^2 / d^2
@@ -118,8 +119,8 @@ def _light(light):
 
 def _material(material):
     """Texture and interior of a material."""
-    if max(material.diffuse_image, material.reflect_image, material.transmit_image, material.glow_image) >= 0:
-        raise NotInPovrayError("images are not written for POV-Ray")
+    if expressions_of(material):
+        raise NotInPovrayError("what varies over a surface is not written for POV-Ray")
     reflects, transmits = max(material.reflect) > 0.0, max(material.transmit) > 0.0
     absorbs = max(material.absorption) > 0.0
     if transmits and (max(material.diffuse) > 0.0 or max(material.glow) > 0.0):

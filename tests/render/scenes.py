@@ -3,6 +3,7 @@
 import numpy as np
 
 from addon.engine import Camera, Geometry, Image, Instances, Light, Material, Scene, Spheres, Triangles, World
+from addon.engine.material import surface_image
 
 
 def still_life(eye=(3.0, -5.0, 2.6), aspect=4.0 / 3.0):
@@ -14,7 +15,7 @@ def still_life(eye=(3.0, -5.0, 2.6), aspect=4.0 / 3.0):
     floor, red, mirror, glass, blue, syrup, yellow = (
         scene.add_material(material)
         for material in (
-            Material(diffuse=1.0, diffuse_image=board, reflect=0.1, fresnel=False),
+            Material(diffuse=surface_image(board), reflect=0.1, fresnel=False),
             Material(diffuse=(0.8, 0.2, 0.1)),
             Material.mirror((0.9, 0.9, 0.85)),
             Material.glass((0.95, 0.98, 0.95)),

@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 
 from addon.engine import Camera, Light, Material, Scene, Settings, World, render
+from addon.engine.visibility import Visibility
 
 UP = (0.0, 0.0, 1.0)
 
 
 def floor_under(light, *spheres, window=2.0):
-    """A white floor seen straight from above, and what stands on it, under one light."""
+    """A white floor seen straight from above, and what stands on it, under one light that is not seen itself."""
     scene = Scene(world=World((0.0, 0.0, 0.0)), materials=[Material(diffuse=1.0), Material(diffuse=0.0)])
     scene.camera = Camera.orthographic_at((0, 0, 50), (0, 0, 0), window, up=(0, 1, 0))
     scene.add_plane((0, 0, 0), UP)
     for center, radius in spheres:
         scene.add_spheres(center, radius, 1)
-    scene.add_light(light)
+    scene.add_light(replace(light, visibility=Visibility.ALL & ~Visibility.CAMERA))
     return scene
 
 

@@ -16,6 +16,7 @@ from addon.engine import (
     World,
     render,
 )
+from addon.engine.material import surface_attribute, surface_image
 
 from .probe import along
 
@@ -31,7 +32,7 @@ def uv_image():
 
 def textured_scene(image):
     """A black world where material 0 glows with the image."""
-    glowing = Material(diffuse=0.0, glow=1.0, glow_image=0)
+    glowing = Material(diffuse=0.0, glow=surface_image(0))
     return Scene(world=World((0.0, 0.0, 0.0)), materials=[glowing], images=[image])
 
 
@@ -122,14 +123,14 @@ def test_between_and_beyond_texels(device, interpolation, extension, u, expected
 def test_each_colour_may_come_from_an_image(device, share):
     """A grey image halves the colour that it belongs to and no other: each adds to what is seen."""
     colors = {"diffuse": 0.2, "reflect": 0.3, "transmit": 0.1, "glow": 0.05}
-    images = {f"{name}_image": 0 for name in colors}
+    images = {name: color * surface_image(0) for name, color in colors.items()}
     scene = Scene(world=World((1.0, 1.0, 1.0)), images=[Image(np.full((1, 1, 3), value)) for value in (1.0, 0.5)])
-    scene.add_material(Material(**colors, **images, fresnel=False, ior=1.0))
+    scene.add_material(Material(**images, fresnel=False, ior=1.0))
     scene.add_light(Light.sun((0.0, 0.0, 1.0), np.pi))
     scene.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
     ray = (0.3, 0.3, 1.0), (0.0, 0.0, -1.0)
     assert along(device, scene, *ray, SETTINGS) == pytest.approx(sum(colors.values()), abs=1e-6)
-    scene.materials = [Material(**colors, **images | {f"{share}_image": 1}, fresnel=False, ior=1.0)]
+    scene.materials = [Material(**images | {share: colors[share] * surface_image(1)}, fresnel=False, ior=1.0)]
     expected = sum(colors.values()) - 0.5 * colors[share]
     assert along(device, scene, *ray, SETTINGS) == pytest.approx(expected, abs=1e-6)
 
@@ -140,14 +141,14 @@ def test_each_colour_may_come_from_an_attribute(device, share):
     colors = {"diffuse": 0.2, "reflect": 0.3, "transmit": 0.1, "glow": 0.05}
     tint = np.array((0.5, 0.25, 2.0))
     for attributes, image, factor in (
-        ({"tint": (*tint, 1.0)}, -1, tint),
-        ({"tint": (*tint, 1.0)}, 0, 0.5 * tint),
-        ({}, -1, 0.0 * tint),
+        ({"tint": (*tint, 1.0)}, False, tint),
+        ({"tint": (*tint, 1.0)}, True, 0.5 * tint),
+        ({}, False, 0.0 * tint),
     ):
         scene = Scene(world=World((1.0, 1.0, 1.0)))
         scene.add_image(Image(np.full((1, 1, 3), 0.5)))
-        named = {f"{share}_attribute": "tint", f"{share}_image": image}
-        scene.materials = [Material(**colors, **named, fresnel=False, ior=1.0)]
+        tinted = colors[share] * surface_attribute("tint") * (surface_image(0) if image else 1.0)
+        scene.materials = [Material(**colors | {share: tinted}, fresnel=False, ior=1.0)]
         scene.add_discs((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 1.0, attributes=attributes)
         scene.add_light(Light.sun((0.0, 0.0, 1.0), np.pi))
         expected = sum(colors.values()) + (factor - 1.0) * colors[share]

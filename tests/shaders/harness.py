@@ -52,10 +52,13 @@ def frame_record(**values):
     return frame.view(np.float32)
 
 
-def run(device, entry, count, textures, *, features=(), constants=None, outputs=("out_color",), frame=None):
+def run(
+    device, entry, count, textures, *, features=(), constants=None, outputs=("out_color",), frame=None, generated=()
+):
     """Draw `count` pixels of the fragment file `entry`; a list of (count, 4) float32, one for each output.
 
-    `textures`: texels (height, width, 4) by name. The pixel's number is `TEST_INDEX` in GLSL.
+    `textures`: texels (height, width, 4) by name. `generated`: (name, text) of files. The pixel's number is
+    `TEST_INDEX` in GLSL.
     """
     index = f"(int(gl_FragCoord.y) * {ROW} + int(gl_FragCoord.x))"
     source = shader_source.program(
@@ -65,6 +68,7 @@ def run(device, entry, count, textures, *, features=(), constants=None, outputs=
         outputs,
         FOLDERS,
         (*layout.RECORDS, TEST_RAY, TEST_VALUE),
+        generated,
     )
     program = device.program(source)
     height = -(-count // ROW)

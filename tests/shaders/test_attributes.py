@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from addon.engine.material import surface_attribute
 from addon.engine.packing import pack
 from addon.engine.primitives import Cones, Cylinders, Discs, Planes, Spheres, Triangles
 from addon.engine.scene import Geometry, Instances, Material
@@ -36,7 +37,7 @@ def look_up(device, scene, origin, direction):
 def numbered_scene():
     """An empty scene whose materials glow with their number and name both attributes."""
     scene = scenes.empty_scene()
-    scene.materials = [Material(glow=0.0, diffuse_attribute=NAMES[0], transmit_attribute=NAMES[1])]
+    scene.materials = [Material(diffuse=surface_attribute(NAMES[0]), transmit=surface_attribute(NAMES[1]))]
     return scene
 
 

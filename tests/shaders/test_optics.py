@@ -29,6 +29,21 @@ def exact_fresnel(cos_i, eta):
     return np.where(sine >= 1.0, 1.0, np.where(i < 1e-6, ((1.0 - eta) / (1.0 + eta)) ** 2, reflectance))
 
 
+def test_metals_reflect_by_their_complex_index(device):
+    """Without extinction as dielectrics."""
+    rng = np.random.default_rng(7)
+    cosine = shapes.single(rng.uniform(0.02, 1.0, N))
+    index, extinction = (shapes.single(rng.uniform(low, 4.0, (3, N))) for low in (0.1, 0.0))
+    extinction[2], index[2] = 0.0, np.maximum(index[2], 1.0)
+    (found,) = harness.run_values(device, "conductor_frag.glsl", cosine, *index, *extinction, np.zeros(N))
+    inside = np.sqrt((index + 1j * extinction) ** 2 - (1.0 - cosine**2))
+    along = (index + 1j * extinction) ** 2 * cosine
+    amplitudes = (cosine - inside) / (cosine + inside), (along - inside) / (along + inside)
+    exact = sum(np.abs(a) ** 2 for a in amplitudes) / 2.0
+    assert np.abs(found[:, :3] - exact.T).max() < 2e-4, "where a root nearly vanishes"
+    assert np.abs(found[:, 2] - exact_fresnel(cosine, 1.0 / index[2])).max() < 2e-4
+
+
 def test_fresnel_is_exact(device):
     rng = np.random.default_rng(0)
     cos_i, eta = shapes.single(rng.uniform(0.0, 1.0, N)), shapes.single(shapes.log_uniform(rng, 0.2, 5.0, N))

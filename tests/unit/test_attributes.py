@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from addon.engine import layout
+from addon.engine.material import surface_attribute
 from addon.engine.packing import pack
 from addon.engine.primitives import Cylinders, Planes, Spheres, Triangles
 from addon.engine.scene import Camera, Geometry, Instances, Material, Scene
@@ -36,7 +37,7 @@ def looked_up(packed, attribute, geometry, kind, index):
 
 def test_each_primitive_finds_its_value():
     """Two geometries and the world share a record texture; each tree has an order of its own."""
-    scene = scene_of(Material(diffuse_attribute="size"))
+    scene = scene_of(Material(diffuse=surface_attribute("size")))
     scene.add(spheres(50, "size"))
     with_, without = Geometry(spheres(70, "size", 1)), Geometry(spheres(30, None, 2))
     scene.instances = [Instances(with_, np.eye(4)), Instances(without, np.eye(4))]
@@ -57,7 +58,7 @@ def test_values_at_corners_and_ends():
     rng = np.random.default_rng(3)
     corners = rng.random((40, 3, 3)).astype(np.float32)
     colors = np.concatenate([corners, np.ones((40, 3, 1), np.float32)], axis=-1)
-    scene = scene_of(Material(glow_attribute="place"))
+    scene = scene_of(Material(glow=surface_attribute("place")))
     scene.add(Triangles(**{f"p{i}": corners[:, i] for i in range(3)}, attributes={"place": colors}))
     scene.add(Cylinders(base=corners[:, 0], apex=corners[:, 1], radius=0.1, attributes={"place": colors[:, :2]}))
     packed = pack(scene, LIMIT)
@@ -73,7 +74,7 @@ def test_values_at_corners_and_ends():
 
 @pytest.mark.parametrize("shapes", [False, True])
 def test_each_instance_finds_its_value(shapes):
-    scene = scene_of(Material(reflect_attribute="id"))
+    scene = scene_of(Material(reflect=surface_attribute("id")))
     if shapes:
         scene.add(spheres(5))
     geometries = [Geometry(spheres(2)), Geometry(spheres(3))]
@@ -97,7 +98,7 @@ def test_each_instance_finds_its_value(shapes):
 
 
 def test_planes_have_attributes_too():
-    scene = scene_of(Material(diffuse_attribute="color"))
+    scene = scene_of(Material(diffuse=surface_attribute("color")))
     scene.add(Planes(point=[0, 0, 0], normal=[0, 0, 1]))
     scene.add(Planes(point=[[0, 0, 1]] * 2, normal=[0, 0, 1], attributes={"color": [[1, 2, 3, 4], [5, 6, 7, 8]]}))
     packed = pack(scene, LIMIT)
@@ -106,16 +107,14 @@ def test_planes_have_attributes_too():
 
 
 def test_only_what_materials_name_is_uploaded():
-    scene = scene_of(Material(diffuse_attribute="size"), Material(glow_attribute="absent", reflect_attribute="size"))
+    scene = scene_of(
+        Material(diffuse=surface_attribute("size")),
+        Material(glow=surface_attribute("absent"), reflect=surface_attribute("size")),
+    )
     part = spheres(20, "size")
     part.attributes["unused"] = np.ones((20, 1, 4), np.float32)
     scene.add(part)
     packed = pack(scene, LIMIT)
     assert packed.textures["attributes"].size == 20 * 4
-    material = layout.records_of(packed.textures["tables"], layout.MATERIAL)
-    assert material["diffuse_attribute"][:2].tolist() == [1, -1] and material["glow_attribute"][:2].tolist() == [-1, 0]
-    assert material["reflect_attribute"][:2].tolist() == [-1, 1]
-    assert looked_up(packed, 0, 0, "sphere", 3) is None, "what nothing has is 0 everywhere"
-    scene.materials = [Material()]
-    packed = pack(scene, LIMIT)
-    assert "attributes" not in packed.textures and "HAS_ATTRIBUTES" not in packed.features
+    constants = layout.records_of(packed.textures["tables"], layout.CONSTANT, int(packed.frame["constant_first"]))
+    assert constants["value"][:2, :2].tolist() == [[1.0, 0.0], [1.0, 0.0]]  # the second has both, reflect before glow

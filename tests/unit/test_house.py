@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addon"
 ENGINE = ADDON / "engine"
 FILES = [path.relative_to(ADDON).as_posix() for path in sorted(ADDON.rglob("*.py"))]
-BLENDER = {"bpy", "bpy_extras", "bl_ui", "bmesh", "gpu", "gpu_extras", "mathutils", "nodeitems_utils"}
+BLENDER = {"bpy", "bpy_extras", "bl_operators", "bl_ui", "bmesh", "gpu", "gpu_extras", "mathutils", "nodeitems_utils"}
 
 
 def imports(path: Path) -> set[tuple[int, str]]:

@@ -7,6 +7,7 @@ import pytest
 
 from addon.engine import bvh, layout, packing
 from addon.engine.errors import SceneError
+from addon.engine.material import surface_attribute
 from addon.engine.packing import pack
 from addon.engine.plan import make_plan
 from addon.engine.primitives import BY_KIND, Cylinders, Discs, Spheres, Triangles
@@ -61,7 +62,7 @@ LARGE = {
     "attributes": (
         scene_of(
             Cylinders(base=np.zeros((900, 3)), apex=[0, 0, 1.0], radius=1, attributes=dict.fromkeys("abc", ENDS)),
-            **{"diffuse_attribute": "a", "glow_attribute": "b", "reflect_attribute": "c"},
+            **{name: surface_attribute(key) for name, key in {"diffuse": "a", "glow": "b", "reflect": "c"}.items()},
         ),
         "the values of 3 attributes need 5400 texels",
     ),

@@ -21,6 +21,7 @@ from addon.engine import (
     Triangles,
     World,
 )
+from addon.engine.material import surface_image
 from addon.engine.nff import NffError, read_nff, write_nff
 from addon.engine.polygons import PolygonError, triangulate
 from examples.standard_scenes import FAMILIES, balls
@@ -403,7 +404,7 @@ CANNOT = {
     "Fresnel": _with_material(fresnel=True),
     "glow": _with_material(glow=1.0),
     "absorption": _with_material(absorption=1.0),
-    "an image texture": _with_material(diffuse_image=0),
+    "values that vary over the surface": _with_material(diffuse=surface_image(0)),
     "a coloured mirror": _with_material(reflect=(1, 0, 0)),
     "a coloured transmittance": _with_material(transmit=(1, 0, 0)),
     "a highlight other than the mirror": _with_material(reflect=1.0),

@@ -7,6 +7,7 @@ import pytest
 
 from addon.engine import layout
 from addon.engine.errors import SceneError
+from addon.engine.material import surface_image
 from addon.engine.packing import pack
 from addon.engine.primitives import Cylinders, Planes, Spheres, Triangles
 from addon.engine.scene import Camera, Geometry, Image, Instances, Light, Material, Scene, Visibility, World
@@ -122,10 +123,10 @@ def test_planes_only_and_nothing_at_all():
 
 def test_features_are_those_that_the_scene_uses():
     scene = scene_of(spheres(3), world=World((1, 1, 1), 0), images=[Image(np.zeros((2, 2, 4)))])
-    assert pack(scene, LIMIT).features == {"HAS_SPHERE", "HAS_WORLD_IMAGE"}
-    scene.materials = [Material(diffuse_image=0, absorption=(0, 1, 0))]
+    assert pack(scene, LIMIT).features == {"HAS_SPHERE", "HAS_PROGRAMS"}
+    scene.materials = [Material(diffuse=surface_image(0), absorption=(0, 1, 0))]
     scene.instances = [Instances(Geometry(Triangles(p0=[[0, 0, 0]], p1=[[1, 0, 0]], p2=[[0, 1, 0]])), np.eye(4))]
-    expected = {"HAS_SPHERE", "HAS_TRIANGLE", "HAS_WORLD_IMAGE", "HAS_IMAGES", "HAS_ABSORPTION", "HAS_INSTANCES"}
+    expected = {"HAS_SPHERE", "HAS_TRIANGLE", "HAS_PROGRAMS", "HAS_ABSORPTION", "HAS_INSTANCES"}
     assert pack(scene, LIMIT).features == expected
 
 
@@ -290,7 +291,7 @@ def test_slots_without_material():
 def test_an_image_that_is_not_there():
     refuse(scene_of(world=World((1, 1, 1), 0)), "the world uses image 0, the scene has 0")
     scene = scene_of()
-    scene.materials = [Material(), Material(glow_image=1)]
+    scene.materials = [Material(), Material(glow=surface_image(1))]
     refuse(scene, "material 1 uses image 1, the scene has 0")
 
 
@@ -307,4 +308,6 @@ def test_lights_have_shapes_where_one_of_them_does():
     packed = pack(scene, LIMIT)
     shapes = records(packed, layout.LIGHT_SHAPE, 4)
     assert "HAS_LIGHT_SHAPES" in packed.features
-    assert shapes["axis_y"][3].tolist() == [0, 1.5, 0] and shapes["spread"] == pytest.approx([0, 0, 0, 1])
+    assert packed.frame["seen_lamp_count"] == 1, "it comes first"
+    assert shapes["axis_y"][0].tolist() == [0, 1.5, 0] and shapes["spread"] == pytest.approx([1, 0, 0, 0])
+    assert shapes["seen_area"] == pytest.approx([6, 0, 0, 0])

@@ -28,8 +28,8 @@ def test_a_sun_s_strength_is_an_irradiance():
         ({"diffuse": (1, -1, 1)}, "material: diffuse is"),
         ({"glow": float("nan")}, "material: glow is"),
         ({"absorption": (0, 0, float("inf"))}, "material: absorption is"),
-        ({"ior": 0.0}, "material: the index of refraction is 0.0; it must be positive"),
-        ({"ior": float("nan")}, "material: the index of refraction is nan"),
+        ({"ior": 0.0}, "material: ior is 0.0; it must be positive"),
+        ({"ior": float("nan")}, "material: ior is nan"),
         ({"shine": float("nan")}, "material: shine is nan"),
     ],
 )
@@ -89,8 +89,10 @@ def test_images_get_an_alpha_and_are_checked():
     for pixels in (np.zeros((2, 3)), np.zeros((2, 3, 2)), np.zeros((0, 3, 4))):
         with pytest.raises(SceneError, match=re.escape(f"image 'wood': shape {pixels.shape}")):
             Image(pixels, name="wood")
-    with pytest.raises(SceneError, match="interpolation 'CUBIC'"):
-        Image(np.zeros((1, 1, 4)), "CUBIC")
+    with pytest.raises(SceneError, match="interpolation 'SINC'"):
+        Image(np.zeros((1, 1, 4)), "SINC")
+    bytes_alone = Image(np.zeros((2, 3, 3), np.uint8)).pixels
+    assert bytes_alone.dtype == np.uint8 and bytes_alone[0, 0].tolist() == [0, 0, 0, 255]
 
 
 def test_a_camera_looks_at_its_target():

@@ -6,6 +6,7 @@ import weakref
 import numpy as np
 
 from addon.engine import Camera, Geometry, Instances, Light, Material, Scene, Session, Settings, Spheres
+from addon.engine.material import surface_attribute
 
 
 class NoDevice:
@@ -60,7 +61,7 @@ def test_each_array_is_freed_before_the_next_is_uploaded():
 
 
 def test_statistics_of_what_was_loaded_and_drawn():
-    session = loaded(scene_of(diffuse_attribute="id"))
+    session = loaded(scene_of(diffuse=surface_attribute("id")))
     session.start(8, 4)
     assert session.statistics()["seconds"]["first_picture"] == 0.0
     while session.step(1.0):
@@ -90,4 +91,4 @@ def test_programs_hold_what_the_materials_ask_for():
     plain = program_of(scene_of())
     assert "cull_back_shadow > 0.5" not in plain and "attribute_value" not in plain
     assert "cull_back_shadow > 0.5" in program_of(scene_of(cull_back_shadow=True), tinted_shadows=False)
-    assert "attribute_value" in program_of(scene_of(glow_attribute="id"))
+    assert "attribute_value" in program_of(scene_of(glow=surface_attribute("id")))

@@ -6,6 +6,7 @@ import pytest
 
 from addon.engine import layout, shader_source
 from addon.engine.layout import Field, Record
+from addon.engine.node_programs import NodePrograms
 from addon.engine.shader_source import FEATURES, SHADER_FOLDER, ShaderSourceError, program
 
 KINDS = [f"HAS_{kind.upper()}" for kind in layout.KINDS if kind != "instance"]
@@ -21,6 +22,9 @@ def compose(tmp_path):
         return program("main.glsl", features, folders=(tmp_path,))
 
     return of
+
+
+GENERATED = (("programs_lib.glsl", NodePrograms().text()),)
 
 
 def body(source):
@@ -117,38 +121,45 @@ def test_every_feature_is_tested_and_every_library_used():
     text = {path.name: path.read_text() for path in SHADER_FOLDER.glob("*.glsl")}
     tested = set(re.findall(r"#ifn?def (\w+)", "\n".join(text.values())))
     assert tested == FEATURES
+    libraries = {name for name in text if name.endswith("_lib.glsl")}
     included = set(re.findall(r'#include "(\S+)"', "\n".join(text.values())))
-    assert included == {name for name in text if name.endswith("_lib.glsl")}
+    python = "\n".join(path.read_text() for path in SHADER_FOLDER.parent.rglob("*.py"))
+    called = {name for name in libraries if any(f'"{word}' in python for word in _functions_of(text[name]))}
+    assert included - {GENERATED[0][0]} <= libraries <= included | called
+
+
+def _functions_of(text):
+    """The names of a library's functions; of those for 1, 2, ... dimensions what they have in common too."""
+    names = set(re.findall(r"^[A-Za-z]\w+ (\w+)\(", text, re.M))
+    return names | {re.sub(r"(_lookup3)?_\dd$", "_", name) for name in names}
 
 
 def test_libraries_keep_the_rules_of_the_house():
     """No uniform, no preprocessor of their own but defines, functions named after the file."""
     for path in SHADER_FOLDER.glob("*_lib.glsl"):
         text = re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.S)
-        assert not re.search(r"^\s*(uniform|layout|in |out )", text, re.M), path.name
-        stem = path.name.removesuffix("_lib.glsl")
+        assert not re.search(r"^\s*(uniform|layout|in|out) .*;", text, re.M), path.name
+        stem = re.sub("(_texture|_nodes)?_lib.glsl$", "", path.name)
         functions = re.findall(r"^[A-Za-z]\w+ (\w+)\(", text, re.M)
         assert functions or stem == "ray", path.name
         for name in functions:
-            assert name.startswith(f"{stem}_"), f"{path.name}: {name}"
+            assert name.startswith((f"{stem}_", "point_beside")), f"{path.name}: {name}"
 
 
 @pytest.mark.parametrize("feature", sorted(FEATURES))
 def test_a_program_has_only_the_textures_it_uses(feature):
-    features = {feature} | ({"HAS_IMAGES"} if feature == "HAS_WORLD_IMAGE" else set())
-    source = shader_source.program("trace_frag.glsl", features)
+    source = shader_source.program("trace_frag.glsl", {feature}, generated=GENERATED)
     kind = feature.removeprefix("HAS_").lower()
     for record in layout.RECORDS:
         if record.texture in ("tables", "nodes", "instances"):
             continue
         assert (record.texture in source.textures) == record.name.startswith(kind), record.texture
     assert ("instances" in source.textures) == (feature == "HAS_INSTANCES")
-    assert ("images" in source.textures) == ("IMAGE" in feature)
 
 
 def test_structs_have_no_constructors():
     """Metal's language has none of GLSL's kind: structs are filled member by member."""
-    text = program("trace_frag.glsl", FEATURES, {}).fragment
+    text = program("trace_frag.glsl", FEATURES, {}, generated=GENERATED).fragment
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     structs = re.findall(r"\bstruct (\w+)", text)
     assert {"Ray", "Surface", "Sphere"} <= set(structs)

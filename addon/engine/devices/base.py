@@ -31,6 +31,12 @@ class Device(Protocol):
         `textures`: data texture by name, at least those of the program. `uniforms`: (n,) float32, the record `Frame`.
         """
 
+    def attachment(self, target, attachment):
+        """An attachment of a target as a texture that other draws can read; it lives as long as the target."""
+
+    def clear(self, target, attachment):
+        """Set an attachment of a target to zero."""
+
     def read(self, target, attachment, rectangle):
         """Pixels (height, width, 4) of an attachment; waits until all drawing is done."""
 

@@ -61,9 +61,10 @@ class BlenderDevice:
             colors = [self._gpu.types.GPUTexture((width, height), format="RGBA32F") for _ in range(attachments)]
         except (RuntimeError, ValueError, MemoryError) as error:
             raise DeviceError(f"no memory for a picture of {width} x {height}: {error}") from error
-        for color in colors:
-            color.clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
-        return _Target(self._gpu.types.GPUFrameBuffer(color_slots=colors), colors)
+        target = _Target(self._gpu.types.GPUFrameBuffer(color_slots=colors), colors)
+        for attachment in range(attachments):
+            self.clear(target, attachment)
+        return target
 
     def program(self, source):
         if source not in _PROGRAMS:
@@ -116,6 +117,12 @@ class BlenderDevice:
             block,
             textures,
         )  # until the next draw has replaced them: the GPU may not have read them yet
+
+    def attachment(self, target, attachment):
+        return target.colors[attachment]
+
+    def clear(self, target, attachment):
+        target.colors[attachment].clear(format="FLOAT", value=(0.0, 0.0, 0.0, 0.0))
 
     def read(self, target, attachment, rectangle):
         x, y, width, height = rectangle

@@ -159,6 +159,15 @@ class HeadlessDevice:
         vertices.render(gl.TRIANGLES)
         target.scissor = None
 
+    def attachment(self, target, attachment):
+        return target.color_attachments[attachment]
+
+    @_in_context
+    def clear(self, target, attachment):
+        only = self._context.framebuffer([target.color_attachments[attachment]])
+        only.clear()
+        only.release()
+
     @_in_context
     def read(self, target, attachment, rectangle):
         x, y, width, height = rectangle

@@ -1,6 +1,6 @@
 /* Ray i against the whole scene: attributes 0 and 1 of what it hits, and which primitive that is. */
 #include "bvh_lib.glsl"
-#include "attribute_lib.glsl"
+#include "attribute_texture_lib.glsl"
 #include <material>
 #include <test_ray>
 
@@ -14,8 +14,9 @@ void main()
   out_hit = vec4(-1.0);
   if (hit.kind >= 0) {
     Surface surface = bvh_surface(hit, ray);
-    out_first = attribute_value(0, surface);
-    out_second = attribute_value(1, surface);
+    Point point = point_of_surface(surface, ray, hit.t, 1);
+    out_first = attribute_value(point, 0);
+    out_second = attribute_value(point, 1);
     out_hit = vec4(read_material(surface.material).glow.x, surface.position);
   }
 }

@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cells and molecules as David Goodsell paints them: flat colors and lines."""
+
+import bpy
+
+render = bpy.context.scene.render
+conic = bpy.context.scene.conic
+
+render.film_transparent = False
+conic.use_flat_colors = True
+conic.use_depth_cue = True
+conic.depth_cue_into = "BACKGROUND"
+conic.depth_cue_strength = 0.4
+conic.depth_cue_range = "SCENE"
+conic.use_outlines = True
+conic.outline_around = "SHAPES"
+conic.outline_color = (0.0, 0.0, 0.0, 1.0)
+conic.outline_width = 2.0
+conic.outline_inner_width = 1.0
+conic.outline_crease_angle = 0.698132
+conic.outline_depth_step = 1.0
