@@ -8,7 +8,7 @@ from addon.engine.packing import pack
 from addon.sync.closures import CLOSURES
 from addon.sync.shader_nodes.registry import ENTRIES
 from tests.blender.building import add_camera, image, material, quad, sync
-from tests.blender.shading_table import cases
+from tests.blender.shading_table import WHOLE, cases
 from tests.blender.shading_table.case import Swatch
 
 #: Values for all sockets of a kind, one after the other: they meet 0, 1, what is between, more and less.
@@ -112,7 +112,7 @@ def _types():
 
 
 @pytest.mark.parametrize("kind", _types())
-@pytest.mark.parametrize("fed", [False, True], ids=["constants", "fed"])
+@pytest.mark.parametrize("fed", [False, True] if WHOLE else [True], ids=["constants", "fed"] if WHOLE else ["fed"])
 def test_node(kind, fed, shown):
     """With constants at all inputs, and with what varies at the first one that is no shader."""
     tree, output = shown
@@ -191,7 +191,7 @@ def test_what_does_compile_anew(shown):
         assert compiled()[0] != glowing
 
 
-@pytest.mark.parametrize("subject", ["values", "trees", "textures", "images", "coordinates"])
+@pytest.mark.parametrize("subject", ["values", "trees", "textures", "images", "coordinates"][:: 1 if WHOLE else 4])
 def test_cases_of_the_table(subject):
     """Every node setting: each swatch of the table, all its constants changed at once."""
     add_camera()

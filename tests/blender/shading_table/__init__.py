@@ -16,13 +16,22 @@ median passes. A case that cannot is a named exception: it says `tolerance=` and
 `test_shading_table.py` runs them all; `python -m tests.blender.shading_table [words of names]` prints the table.
 """
 
+import os
 from functools import cache
 from importlib import import_module
 
 import bpy
 
+#: Whether all cases are tested: where the newest Blender is a module, or if CONIC_WHOLE_TABLE is set. Elsewhere it is
+#: every fourth, since the shaders are the same and Cycles takes its time.
+WHOLE = bool(os.environ.get("CONIC_WHOLE_TABLE")) or (bpy.app.version >= (5, 2, 0) and not bpy.app.binary_path)
 #: Files of this folder, by subject.
 SUBJECTS = ("values", "trees", "textures", "images", "coordinates", "bsdfs", "lights", "worlds", "mirrored")
+
+
+def tested():
+    """The keys of the cases that are tested here."""
+    return list(cases())[:: 1 if WHOLE else 4]
 
 
 @cache

@@ -49,8 +49,8 @@ def _lamp(shader, kind, hidden_from=(), of_object=None, **settings):
 
 
 def _seen(name, shader, *light, **settings):
-    samples = 64 if shader == _DIFFUSE else 128
-    return Scene(name, build=partial(_lamp, shader, *light, **settings), samples=samples, blocks=4, few=0.2)
+    effort = {"samples": 256, "blocks": 2} if shader == _ROUGH else {"samples": 64, "blocks": 4}
+    return Scene(name, build=partial(_lamp, shader, *light, **settings), few=0.2, **effort)
 
 
 _BALL = {"shadow_soft_size": 0.6, "use_soft_falloff": False}
@@ -65,7 +65,8 @@ _LAMPS = {
     "sun": ("SUN", {"angle": radians(20.0), "energy": 3.0}),
 }
 _DIFFUSE = Node("BsdfDiffuse", Color=(0.2, 0.3, 0.5, 1.0))
-_MIRROR = glossy(Color=(0.8, 0.8, 0.8, 1.0), Roughness=0.0)
+#: Polished: a mirror alone shows little but the lamp.
+_POLISHED = Node("MixShader", feed=(0.5, _DIFFUSE, glossy(Color=(0.8, 0.8, 0.8, 1.0), Roughness=0.0)))
 _ROUGH = glossy(Color=(0.8, 0.8, 0.8, 1.0), Roughness=0.15)
 
 _LIGHTS = [
@@ -75,10 +76,10 @@ _LIGHTS = [
         for name in ("soft ball", "rectangle", "area of little spread", "sun")
     ),
     *(
-        _seen(f"hidden from {rays} rays: ball", _MIRROR, "POINT", hidden_from=(rays,), **_BALL)
+        _seen(f"hidden from {rays} rays: ball", _POLISHED, "POINT", hidden_from=(rays,), **_BALL)
         for rays in ("camera", "glossy", "transmission")
     ),
-    _seen("hidden from glossy rays: sun", _MIRROR, "SUN", hidden_from=("glossy",), **_LAMPS["sun"][1]),
+    _seen("hidden from glossy rays: sun", _POLISHED, "SUN", hidden_from=("glossy",), **_LAMPS["sun"][1]),
 ]
 
 
