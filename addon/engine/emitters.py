@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import layout
-from .expression import Call, Literal, Parameter
+from .expression import constant_of
 from .light import LightKind
 from .light_tree import ALL_SIDES, LightBounds
 from .primitives import Cones, Cylinders, Discs, Spheres, Triangles
@@ -121,9 +121,9 @@ def _glow(materials):
     for number, material in enumerate(materials):
         if material.emission == "NONE":
             continue
-        glow = material.glow
-        varies[number] = isinstance(glow, Call)
-        color[number] = 1.0 if varies[number] else glow.value if isinstance(glow, (Literal, Parameter)) else glow
+        glow = constant_of(material.glow)
+        varies[number] = glow is None
+        color[number] = 1.0 if glow is None else glow
     sides = np.array([_SIDES.get(m.emission, 0) for m in materials])
     culled = np.array([m.cull_back for m in materials])
     color[culled & (sides < 0)] = 0.0

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .glsl_functions import function
+from .operators import OPERATORS
 
-#: Rec. 709 luminance.
-LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
 _SIZES = {"float": 1, "vec2": 2, "vec3": 3, "vec4": 4}
 _TYPES = {size: name for name, size in _SIZES.items()}
 _LARGEST = float(np.finfo(np.float32).max)
@@ -116,69 +115,6 @@ class Call(Expression):
     beside: int = 0
 
 
-@dataclass(frozen=True)
-class Operator:
-    """GLSL `text` with the inputs in braces, and its numpy twin. `type`: of the result; empty: the widest of the
-    inputs, to which all are widened but the first `narrow` ones, which stay numbers, and where it `takes_numbers` all
-    numbers."""
-
-    text: str
-    twin: object
-    type: str = ""
-    narrow: int = 0
-    takes_numbers: bool = False
-
-
-def _select(condition, a, b):
-    return np.where(condition > 0.5, a, b)
-
-
-def _power(a, b):
-    return np.where(a > 0.0, np.power(np.where(a > 0.0, a, 1.0), b), 0.0)
-
-
-#: What arithmetic compiles to. Where float and vector differ GLSL's own overloads serve both.
-OPERATORS = {
-    "add": Operator("({0} + {1})", np.add, takes_numbers=True),
-    "subtract": Operator("({0} - {1})", np.subtract, takes_numbers=True),
-    "multiply": Operator("({0} * {1})", np.multiply, takes_numbers=True),
-    "divide": Operator(
-        "operator_divided({0}, {1})",
-        lambda a, b: np.where(b != 0.0, a / np.where(b != 0.0, b, 1.0), 0.0),
-    ),
-    "minimum": Operator("min({0}, {1})", np.minimum),
-    "maximum": Operator("max({0}, {1})", np.maximum),
-    "mix": Operator("mix({1}, {2}, {0})", lambda t, a, b: a + (b - a) * t, narrow=1),
-    "select": Operator("({0} > 0.5 ? {1} : {2})", _select, narrow=1),
-    "less": Operator("({0} < {1} ? 1.0 : 0.0)", lambda a, b: np.where(a < b, 1.0, 0.0), "float"),
-    "sqrt": Operator("sqrt(max({0}, 0.0))", lambda a: np.sqrt(np.maximum(a, 0.0))),
-    "absolute": Operator("abs({0})", np.abs),
-    "exp": Operator("exp({0})", np.exp),
-    "power": Operator("operator_power({0}, {1})", _power),
-    "combine": Operator("vec3({0}, {1}, {2})", lambda *x: np.concatenate(x), "vec3", narrow=3),
-    "mean": Operator("dot({0}, vec3(1.0 / 3.0))", lambda a: a.mean(keepdims=True), "float"),
-    "luminance": Operator("dot({0}, vec3(0.2126, 0.7152, 0.0722))", lambda a: np.array([a @ LUMINANCE]), "float"),
-    "largest": Operator("operator_largest({0})", lambda a: a.max(keepdims=True), "float"),
-    "x": Operator("{0}.x", lambda a: a[0:1], "float"),
-    "y": Operator("{0}.y", lambda a: a[1:2], "float"),
-    "z": Operator("{0}.z", lambda a: a[2:3], "float"),
-    "w": Operator("{0}.w", lambda a: a[3:4], "float"),
-    "settled": Operator("{0}", lambda a: a),
-}
-for _from, _to, _text in (  # conversions: numbers are repeated, vectors lose components or gain 0, and 1 as the fourth
-    ("float", "vec2", "vec2({0})"),
-    ("float", "vec3", "vec3({0})"),
-    ("float", "vec4", "vec4({0})"),
-    ("vec2", "vec3", "vec3({0}, 0.0)"),
-    ("vec2", "vec4", "vec4({0}, 0.0, 1.0)"),
-    ("vec3", "vec2", "{0}.xy"),
-    ("vec3", "vec4", "vec4({0}, 1.0)"),
-    ("vec4", "vec2", "{0}.xy"),
-    ("vec4", "vec3", "{0}.xyz"),
-):
-    OPERATORS[f"{_from}_{_to}"] = Operator(_text, None, _to)
-
-
 def literal(value):
     """A constant of the structure: a number or a sequence of two to four."""
     values = tuple(float(x) for x in np.atleast_1d(np.asarray(value, np.float64)))
@@ -194,18 +130,19 @@ def is_constant(value):
     return isinstance(value, (Literal, Parameter))
 
 
+def constant_of(value):
+    """The number (1,) or colour (3,) of a member of a material or world that is the same everywhere, be it plain or an
+    Expression; None of one that varies."""
+    if is_constant(value):
+        return value.value
+    return None if isinstance(value, Expression) else tuple(np.atleast_1d(value).tolist())
+
+
 def is_zero(value):
     """Whether something is zero by its structure: a plain number or colour, or a literal."""
     if isinstance(value, Literal):
         return not any(value.value)
     return not isinstance(value, Expression) and not np.any(value)
-
-
-def is_value(value, number):
-    """Whether something is `number`, in each component, by its structure."""
-    if isinstance(value, Expression):
-        return _is_literal(value, number)
-    return bool(np.all(np.asarray(value) == number))
 
 
 def _is_literal(value, number):
@@ -317,15 +254,6 @@ def sqrt(x):
 
 def absolute(x):
     return _operate("absolute", expression(x))
-
-
-def exp(x):
-    return _operate("exp", expression(x))
-
-
-def power(a, b):
-    """a to the power of b, 0 where a is not positive."""
-    return _operate("power", expression(a), expression(b))
 
 
 def mean(x):

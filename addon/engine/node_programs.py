@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from .expression import (
-    OPERATORS,
     AttributeNumber,
     Call,
     Literal,
@@ -15,6 +14,7 @@ from .expression import (
     in_order,
 )
 from .glsl_functions import function
+from .operators import OPERATORS
 from .program_writer import Step, Structure, programs_text
 
 _CONSTANTS = (Parameter, Table, AttributeNumber)

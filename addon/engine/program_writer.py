@@ -14,8 +14,8 @@ import re
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 
-from .expression import OPERATORS
 from .glsl_functions import function
+from .operators import OPERATORS
 
 _INCLUDES = ("<material>", '"point_lib.glsl"', '"operator_lib.glsl"')
 _VALUE = re.compile(r"\$(\d+)_(\d+)")

@@ -18,8 +18,7 @@ from functools import cache
 from pathlib import Path
 
 from . import layout, record_glsl
-
-SHADER_FOLDER = Path(__file__).resolve().parents[1] / "shaders"
+from .glsl_functions import SHADER_FOLDER
 
 #: Names that shader files may test.
 FEATURES = frozenset(
@@ -55,6 +54,7 @@ FEATURES = frozenset(
         "HAS_ROUGHNESS",
         "HAS_METALS",
         "TINTED_SHADOWS",
+        "TRANSPARENT_SHADOWS",
         "CULLED_SHADOWS",
         "COUNT_RAYS",
         "FLAT_COLORS",

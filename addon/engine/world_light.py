@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import layout, shader_source
-from .expression import Expression, Literal, Parameter
+from .expression import constant_of
 from .node_programs import constant_texels
+from .operators import LUMINANCE
 
 #: Cells along a side of the map of a world that is smooth, and the most: a quarter of the sun's disc fills one.
 _SIDE, _LARGEST_SIDE = 128, 1024
@@ -23,7 +24,6 @@ _SAMPLES = 2, 16
 _COSINE_SHARES = (0.1, 0.25, 0.5, 0.75, 1.0)
 #: How bright a cell is to be at least beside a bright one.
 _RIM = 0.1
-_LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class WorldLight:
     @classmethod
     def of_map(cls, radiance):
         radiance = np.maximum(np.nan_to_num(np.asarray(radiance), posinf=0.0), 0.0)
-        brightness = np.asarray(radiance @ _LUMINANCE, np.float64)
+        brightness = np.asarray(radiance @ LUMINANCE, np.float64)
         is_black = not brightness.any()
         brightness = _with_rims(brightness)
         brightness /= max(brightness.mean(), 1e-300)
@@ -57,9 +57,9 @@ def world_digest(packed):
     if not packed.world.lights:
         return b""
     programs, program = packed.world_programs
-    constant = _constant(packed.world.radiance)
+    constant = constant_of(packed.world.radiance)
     digest = hashlib.blake2b(digest_size=16)
-    digest.update(repr((packed.world.detail, None if constant is None else tuple(constant), programs.text())).encode())
+    digest.update(repr((packed.world.detail, constant, programs.text())).encode())
     if program:
         digest.update(constant_texels(program, 0, lambda key: -1))
         if "images" in packed.textures:
@@ -69,19 +69,12 @@ def world_digest(packed):
 
 def light_of_world(device, packed, textures):
     """The `WorldLight` of a `PackedScene` whose `textures` are on the device; None of a black world."""
-    constant = _constant(packed.world.radiance)
+    constant = constant_of(packed.world.radiance)
     if constant is None:
         light = WorldLight.of_map(_draw_map(device, packed, textures))
     else:
         light = WorldLight.of_map(np.broadcast_to(constant, (_SIDE, _SIDE, 3)))
     return None if light.is_black else light
-
-
-def _constant(radiance):
-    """The colour (3,) of a world that is the same everywhere, else None."""
-    if isinstance(radiance, Literal | Parameter):
-        radiance = radiance.value
-    return None if isinstance(radiance, Expression) else np.broadcast_to(np.asarray(radiance, np.float64), (3,))
 
 
 def _draw_map(device, packed, textures):

@@ -1,4 +1,5 @@
 /* Arithmetic that GLSL has no operators for, for numbers and vectors alike. */
+#include "optics_lib.glsl"
 
 float operator_divided(float a, float b)
 {
@@ -13,21 +14,6 @@ vec2 operator_divided(vec2 a, vec2 b)
 vec3 operator_divided(vec3 a, vec3 b)
 {
   return vec3(operator_divided(a.xy, b.xy), operator_divided(a.z, b.z));
-}
-
-float operator_power(float a, float b)
-{
-  return a > 0.0 ? pow(a, b) : 0.0;
-}
-
-vec3 operator_power(vec3 a, vec3 b)
-{
-  return vec3(operator_power(a.x, b.x), operator_power(a.y, b.y), operator_power(a.z, b.z));
-}
-
-float operator_largest(vec3 a)
-{
-  return max(a.x, max(a.y, a.z));
 }
 
 /* What a node may make, NaN and infinity among it, as a number within limits. */

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..engine.expression import is_constant
+from ..engine.expression import constant_of
 from ..engine.primitives import invertible
 from ..engine.scene import Light, Visibility
 from .closures import read_closure
 from .compat import flattened, light_factor
 from .nodes import output_source
-from .tree_reader import TreeReader, constant_of
+from .tree_reader import TreeReader
 from .visibility import seen_by
 
 
@@ -58,9 +58,11 @@ class Lights:
 
 def _constant_color(value, reader):
     """The colour (3,) of an Expression; of one that varies over the light white, reported."""
-    if not is_constant(value):
+    color = constant_of(value)
+    if color is None:
         reader.warn("its light varies over it or with the direction; it is rendered white")
-    return np.broadcast_to(constant_of(value, (1.0,)), 3)
+        color = (1.0,)
+    return np.broadcast_to(color, 3)
 
 
 def _is_falloff(source, light):
@@ -73,7 +75,7 @@ def _is_falloff(source, light):
 def _with_falloff(emission, reader):
     """(strength (3,), whether it falls off) of an Emission whose strength is that of a Light Falloff node."""
     falloff = emission.input("Strength")
-    if constant_of(reader.number(falloff.input("Smooth")), (0.0,))[0] > 0.0:
+    if any(x > 0.0 for x in constant_of(reader.number(falloff.input("Smooth"))) or ()):
         reader.warn(f"node {falloff.name!r}: its smoothing is not rendered")
     strength = reader.color(emission.input("Color")) * reader.number(falloff.input("Strength"))
     return _constant_color(strength, reader), falloff.output.identifier == "Quadratic"

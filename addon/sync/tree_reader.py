@@ -4,17 +4,7 @@
 import contextlib
 import sys
 
-from ..engine.expression import (
-    Call,
-    Expression,
-    Parameter,
-    as_type,
-    call,
-    in_order,
-    is_constant,
-    luminance,
-    mean,
-)
+from ..engine.expression import Parameter, as_type, call, luminance, mean
 from .attributes import key_of
 from .shader_nodes.registry import ENTRIES, Node, attribute_color, output_of
 
@@ -67,10 +57,6 @@ class TreeReader:
             self._open.discard(key)
         found = self._known[key]
         return self._own(source) if found is None else found
-
-    def generated(self, n):
-        """The coordinates that textures take where nothing else is said."""
-        return call("point_position") if self.kind == "WORLD" else ENTRIES["TEX_COORD"](n)["Generated"]
 
     def uv(self, name=""):
         """The uv map of a name, empty for the active one, as a vector. The first one that is asked for is the
@@ -149,17 +135,6 @@ def parameter_of(value):
     if isinstance(value, (bool, int, float)):
         return Parameter(float(value))
     return Parameter(tuple(float(c) for c in value)[:3])
-
-
-def constant_of(value, fallback):
-    """A number or colour where it is the same everywhere; else `fallback`."""
-    return value.value if is_constant(value) else fallback
-
-
-def uses(values, name):
-    """Whether expressions call a function."""
-    values = [value for value in values if isinstance(value, Expression)]
-    return any(isinstance(node, Call) and node.name == name for node in in_order(values))
 
 
 def _shown(rgb):

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from addon.engine.expression import OPERATORS, Call, Parameter, as_type, expression, in_order, is_constant
+from addon.engine.expression import Call, Parameter, as_type, expression, in_order, is_constant
+from addon.engine.operators import OPERATORS
 from addon.engine.scene import Material
 from addon.sync.scene_sync import sync_scene
 

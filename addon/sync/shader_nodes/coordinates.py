@@ -47,6 +47,14 @@ def generated(n):
     return call("coordinate_in_box", call("coordinate_in_space", *object_space()), scale, offset)
 
 
+def texture_vector(n, default="generated"):
+    """The input "Vector" of a texture; where nothing feeds it the coordinates that Blender takes: generated, or with
+    `default` "uv" the active uv map."""
+    if n.linked("Vector"):
+        return n.vector("Vector")
+    return n.uv() if default == "uv" and not n.in_world else generated(n)
+
+
 def _of_instancer(n):
     if n.node.from_instancer:
         n.instead("coordinates of the instance itself")
@@ -99,8 +107,6 @@ _COORDINATES = {
 
 @reads("TEX_COORD")
 def texture_coordinate(n):
-    if n.node.type != "TEX_COORD":  # a texture asks for what it takes where nothing is linked
-        return {"Generated": generated(n)}
     return _COORDINATES[n.output](n)
 
 

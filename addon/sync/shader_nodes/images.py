@@ -4,7 +4,7 @@
 from ...engine.expression import Parameter, call, calls, component, expression
 from ..images import MISSING
 from ..skies import sky
-from .coordinates import normal, object_space
+from .coordinates import normal, object_space, texture_vector
 from .registry import reads
 
 _MISSING = Parameter((*MISSING, 1.0))
@@ -21,7 +21,7 @@ def _color(picture, uv):
 
 @reads("TEX_IMAGE")
 def image_texture(n):
-    vector = n.coordinates("Vector", "uv")  # also where no picture is wanted: it says which uv map is in use
+    vector = texture_vector(n, "uv")  # also where no picture is wanted: it says which uv map is in use
     if n.images is None:
         return _outputs(expression((1.0, 1.0, 1.0, 1.0)))
     picture = _picture(n, divided=n.node.outputs["Alpha"].is_linked)
@@ -60,4 +60,4 @@ def environment_texture(n):
 def sky_texture(n):
     if n.images is None:
         return expression((1.0, 1.0, 1.0))
-    return sky(n.node, n.coordinates("Vector"), n.images, n.warn)
+    return sky(n.node, texture_vector(n), n.images, n.warn)

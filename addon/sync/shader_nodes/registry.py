@@ -49,10 +49,6 @@ class Node:
         return self.reader.kind == "WORLD"
 
     @property
-    def in_light(self):
-        return self.reader.kind == "LIGHT"
-
-    @property
     def images(self):
         """The `Images` of the scene; None where only light is asked for."""
         return self.reader.images
@@ -89,22 +85,10 @@ class Node:
         """An input as a vector; 0 where there is none."""
         return self.reader.color(self.input(*names))
 
-    def any(self, *names):
-        """An input as it is, a number or a colour."""
-        return self.reader.value(self.input(*names))
-
     def constant(self, *names):
         """An input as a number where it is the same everywhere, else None."""
         value = self.number(*names)
         return value.value[0] if is_constant(value) else None
-
-    def coordinates(self, name="Vector", default="generated"):
-        """A vector input; where nothing feeds it the coordinates that Blender takes: generated, or the active uv."""
-        if self.linked(name):
-            return self.vector(name)
-        if default == "uv" and not self.in_world:
-            return self.uv()
-        return self.reader.generated(self)
 
     def uv(self, name=""):
         """The uv map of a name as a vector, by default the active one."""

@@ -8,6 +8,7 @@ material that has none gets zeros, for which nothing is computed.
 import bpy
 
 from ...engine.expression import Parameter, call, calls, component, literal, mean, mix, vanishes
+from .coordinates import texture_vector
 from .registry import reads
 
 _NOISES = ("FBM", "MULTIFRACTAL", "HYBRID_MULTIFRACTAL", "RIDGED_MULTIFRACTAL", "HETERO_TERRAIN")
@@ -39,7 +40,7 @@ def noise(n):
     channels = 3 if node.outputs["Color"].is_linked else 1
     value, color = calls(
         f"noise_texture_{node.noise_dimensions.lower()}",
-        *_place(n, node.noise_dimensions, n.coordinates("Vector")),
+        *_place(n, node.noise_dimensions, texture_vector(n)),
         *inputs,
         _choice(_NOISES.index(node.noise_type)),
         _choice(node.normalize),
@@ -55,7 +56,7 @@ def voronoi(n):
     of_version = "lookup3" if bpy.app.version < (5, 0, 0) else "texture"
     distance, color, position = calls(
         f"voronoi_{of_version}_{node.voronoi_dimensions.lower()}",
-        *_place(n, node.voronoi_dimensions, n.coordinates("Vector")),
+        *_place(n, node.voronoi_dimensions, texture_vector(n)),
         *(n.number(name) for name in inputs),
         _choice(_FEATURES.index(node.feature)),
         _choice(_METRICS.index(node.distance)),
@@ -75,7 +76,7 @@ def gabor(n):
     dimensions = n.node.gabor_type
     value, phase, intensity = calls(
         f"gabor_texture_{dimensions.lower()}",
-        n.coordinates("Vector"),
+        texture_vector(n),
         *(n.number(name) for name in ("Scale", "Frequency", "Anisotropy")),
         n.number("Orientation 2D") if dimensions == "2D" else n.vector("Orientation 3D"),
         _choice(_GABOR_IMPULSES),
@@ -92,13 +93,13 @@ def white_noise(n):
 
 @reads("TEX_GRADIENT")
 def gradient(n):
-    value = call("pattern_gradient", n.coordinates("Vector"), _GRADIENTS.index(n.node.gradient_type))
+    value = call("pattern_gradient", texture_vector(n), _GRADIENTS.index(n.node.gradient_type))
     return {"Fac": value, "Factor": value, "Color": value}
 
 
 @reads("TEX_CHECKER")
 def checker(n):
-    value = call("pattern_checker", n.coordinates("Vector") * n.number("Scale"))
+    value = call("pattern_checker", texture_vector(n) * n.number("Scale"))
     return {"Fac": value, "Factor": value, "Color": mix(n.color("Color2"), n.color("Color1"), value)}
 
 
@@ -107,7 +108,7 @@ def brick(n):
     node = n.node
     mortar, tint = calls(
         "pattern_brick",
-        n.coordinates("Vector") * n.number("Scale"),
+        texture_vector(n) * n.number("Scale"),
         *(n.number(name) for name in ("Mortar Size", "Mortar Smooth", "Bias", "Brick Width", "Row Height")),
         *map(n.parameter, (node.offset, node.offset_frequency, node.squash, node.squash_frequency)),
     )
@@ -117,7 +118,7 @@ def brick(n):
 
 @reads("TEX_MAGIC")
 def magic(n):
-    place, depth = n.coordinates("Vector") * n.number("Scale"), n.parameter(n.node.turbulence_depth)
+    place, depth = texture_vector(n) * n.number("Scale"), n.parameter(n.node.turbulence_depth)
     color = call("pattern_magic", place, depth, n.number("Distortion"))
     return {"Fac": mean(color), "Factor": mean(color), "Color": color}
 
@@ -125,7 +126,7 @@ def magic(n):
 @reads("TEX_WAVE")
 def wave(n):
     node = n.node
-    place = call("pattern_off_unit", n.coordinates("Vector") * n.number("Scale"))
+    place = call("pattern_off_unit", texture_vector(n) * n.number("Scale"))
     if node.wave_type == "BANDS":
         along = call("pattern_bands", place, literal(_BANDS[node.bands_direction]))
     else:
