@@ -72,6 +72,27 @@ class ConicSceneSettings(FilmProperties, bpy.types.PropertyGroup):
         max=65536,
         update=tag_update,
     )
+    preview_frame_seconds: FloatProperty(
+        name="Frame",
+        description="How long a redraw of the viewport may take. While the view turns, the picture has as many pixels "
+        "as are drawn in this time. Less is smoother, more is sharper",
+        default=1.0 / 30.0,
+        min=0.001,
+        soft_min=1.0 / 120.0,
+        soft_max=0.25,
+        max=10.0,
+        precision=3,
+        step=0.5,
+        subtype="TIME_ABSOLUTE",
+        unit="TIME_ABSOLUTE",
+        update=tag_update,
+    )
+    preview_pause: BoolProperty(
+        name="Pause Viewport",
+        description="Keep the pictures of rendered viewports as they are. Where the view turns, a coarse picture shows",
+        default=False,
+        update=tag_update,
+    )
     max_depth: IntProperty(
         name="Max Depth",
         description="Longest chain of rays that is followed. 1 is what the camera sees directly",

@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import gpu_thread, viewport_display
+from . import gpu_thread, viewport_display, viewport_scenes
 from .engine.devices import blender_gpu
 from .render_session import render_layer
 from .viewport_session import ViewportSession
@@ -32,8 +32,7 @@ class ConicRenderEngine(bpy.types.RenderEngine):
         render_layer(self, depsgraph)
 
     def view_update(self, context, depsgraph):
-        self.viewport = self.viewport or ViewportSession(self)
-        self.viewport.mark()
+        viewport_scenes.mark(depsgraph)
 
     def view_draw(self, context, depsgraph):
         self.viewport = self.viewport or ViewportSession(self)
@@ -43,10 +42,12 @@ class ConicRenderEngine(bpy.types.RenderEngine):
 def register():
     bpy.utils.register_class(ConicRenderEngine)
     gpu_thread.register()
+    viewport_scenes.register()
 
 
 def unregister():
     bpy.utils.unregister_class(ConicRenderEngine)
+    viewport_scenes.unregister()
     gpu_thread.unregister()
     viewport_display.unregister()
     blender_gpu.free_programs()  # as the display shader: Python would free them after Blender's end

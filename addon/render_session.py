@@ -52,6 +52,11 @@ def new_device():
         from .engine.devices.headless import HeadlessDevice
 
         return HeadlessDevice()
+    return blender_device()
+
+
+def blender_device():
+    """A device on Blender's GPU context, whose textures Blender can draw."""
     return BlenderDevice() if bpy.app.background else WindowDevice()
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Puts pictures into a viewport, scene-linear and premultiplied: Blender does the display transform."""
+"""Draws films into a viewport as they are on the GPU, scene-linear and premultiplied: Blender does the display
+transform, and nothing is read back."""
 
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -8,58 +10,100 @@ import gpu
 import numpy as np
 from gpu_extras.batch import batch_for_shader
 
+from .engine.film import UNENDED_ALPHA
+from .engine.outlines import DISPLAY_GAMMA
+
 _SHADERS = Path(__file__).parent / "shaders"
-_VERTEX = "void main() { uv = 0.5 * pos + 0.5; gl_Position = vec4(pos, 0.0, 1.0); }"
+_VERTEX = "void main() { uv = corner; gl_Position = vec4(place.xy + corner * place.zw, 0.0, 1.0); }"
+_CORNERS = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0))
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A film as it was at one moment.
+
+    `color`, `lines`: textures of summed samples, `lines` None where there are none; `line_samples`: how many those are.
+    `reached`: as `Film.reached` has it. `edges` (left, right, bottom, top): where it lies on the
+    camera's window; `pixel`: how wide its pixels are there. `smooth`: whether to interpolate between them.
+    """
+
+    color: object
+    reached: tuple
+    edges: tuple
+    pixel: float
+    lines: object = None
+    line_samples: int = 0
+    smooth: bool = False
+
+    def moved(self, shift):
+        """The same film elsewhere on the camera's window."""
+        left, right, bottom, top = self.edges
+        across, up = float(shift[0]), float(shift[1])
+        return replace(self, edges=(left + across, right + across, bottom + up, top + up), smooth=True)
 
 
 @cache  # until Conic is unregistered: Blender may take a new shader for a dropped one that is still bound
 def _shader():
+    """The shader, and the rectangle that it draws."""
     between = gpu.types.GPUStageInterfaceInfo("conic_display")
     between.smooth("VEC2", "uv")
     info = gpu.types.GPUShaderCreateInfo()
-    info.vertex_in(0, "VEC2", "pos")
+    info.vertex_in(0, "VEC2", "corner")
     info.vertex_out(between)
-    info.sampler(0, "FLOAT_2D", "picture")
+    info.sampler(0, "FLOAT_2D", "color_sums")
+    info.sampler(1, "FLOAT_2D", "line_sums")
+    info.push_constant("VEC4", "place")
+    info.push_constant("VEC4", "reached")
+    info.push_constant("FLOAT", "lines")
+    info.push_constant("FLOAT", "smoothed")
+    info.define("UNENDED_ALPHA", f"{UNENDED_ALPHA:e}")
+    info.define("DISPLAY_GAMMA", str(DISPLAY_GAMMA))
     info.fragment_out(0, "VEC4", "out_color")
     info.vertex_source(_VERTEX)
     info.fragment_source((_SHADERS / "display_frag.glsl").read_text())
-    return gpu.shader.create_from_info(info)
-
-
-def _texture(pixels):
-    """A texture of pixels (h, w, 4) float32, bottom row first."""
-    height, width = pixels.shape[:2]
-    flat = np.ascontiguousarray(pixels, np.float32).reshape(-1)
-    data = gpu.types.Buffer("FLOAT", flat.size, flat)
-    return gpu.types.GPUTexture((width, height), format="RGBA32F", data=data)
+    shader = gpu.shader.create_from_info(info)
+    return shader, batch_for_shader(shader, "TRI_STRIP", {"corner": _CORNERS})
 
 
 class Display:
-    """Fills the bound frame buffer with pictures of any size. One can be kept, to lie under those that follow."""
+    """Fills the bound frame buffer, which is a region's."""
 
     def __init__(self):
-        self._kept = None
         self._drawn = ()  # until the next draw: the GPU may not have read it yet
 
-    def keep(self, pixels):
-        """Keep a picture (h, w, 4) float32, bottom row first."""
-        self._kept = _texture(pixels)
-
-    def draw(self, pixels=None, over_kept=True):
-        """Draw the kept picture if there is one and `over_kept`, and over it `pixels` (h, w, 4) float32 if given."""
-        textures = [self._kept] if over_kept and self._kept else []
-        if pixels is not None:
-            textures.append(_texture(pixels))
-        shader = _shader()
-        triangle = batch_for_shader(shader, "TRIS", {"pos": ((-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0))})
+    def draw(self, layers, view):
+        """Draw `Layer`s, each over those before it, within the border of a `View`."""
+        gpu.state.scissor_test_set(True)
+        gpu.state.scissor_set(*view.border)
         gpu.state.blend_set("ALPHA_PREMULT")
+        try:
+            for layer in layers:
+                self._draw(layer, view.camera.window)
+                gpu.state.blend_set("NONE")  # what is transparent does not show the layers below
+        finally:
+            gpu.state.blend_set("NONE")
+            gpu.state.scissor_test_set(False)
+            gpu.shader.unbind()
+        self._drawn = tuple(layers)
+
+    def _draw(self, layer, window):
+        shader, rectangle = _shader()
         shader.bind()
-        for texture in textures:
-            shader.uniform_sampler("picture", texture)
-            triangle.draw(shader)
-        gpu.state.blend_set("NONE")
-        gpu.shader.unbind()
-        self._drawn = textures, triangle
+        shader.uniform_sampler("color_sums", layer.color)
+        shader.uniform_sampler("line_sums", layer.lines or layer.color)
+        shader.uniform_float("place", _place(layer.edges, window))
+        shader.uniform_float("reached", [float(number) for number in layer.reached])
+        shader.uniform_float("lines", float(layer.line_samples if layer.lines else 0))
+        shader.uniform_float("smoothed", float(layer.smooth))
+        rectangle.draw(shader)
+
+
+def _place(edges, window):
+    """Corner and size (4,) in [-1, 1] of `edges` (left, right, bottom, top) within `window`, which fills the region."""
+    low, high = np.array(window[::2]), np.array(window[1::2])
+    corner = (np.array(edges[::2]) - low) / (high - low)
+    opposite = (np.array(edges[1::2]) - low) / (high - low)
+    return (*(2.0 * corner - 1.0).tolist(), *(2.0 * (opposite - corner)).tolist())
 
 
 def unregister():

@@ -1,164 +1,131 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rendered view in a 3D viewport: read the scene when it changed, then draw a little at every redraw."""
+"""The rendered view in a 3D viewport: each redraw brings the scene nearer to Blender's data and the picture nearer to
+its end."""
 
-import logging
-import traceback
-from dataclasses import replace
+import time
+import weakref
 
-import bpy
-
+from . import viewport_log
 from .engine import Session
-from .engine.timing import timed
-from .fingerprint import fingerprint
-from .render_session import is_defect, new_device, sentence_of
-from .statistics import Statistics, publish
-from .sync.camera import camera_of_view
-from .sync.scene_sync import SyncStatistics, sync_scene, sync_settings
+from .statistics import primitives_text, publish
 from .viewport_display import Display
+from .viewport_picture import ViewportPicture
+from .viewport_scenes import scene_of
+from .viewport_view import view_of
+from .wording import counted
 
-log = logging.getLogger(__name__)
-
-DRAW_SECONDS = 1.0 / 30.0  # of tracing in one redraw
-COARSE = 8  # a first picture, of every so manyth pixel, shows until the real one has a whole sample
-_SHOWN_TYPES = sorted(
-    name for name in bpy.types.SpaceView3D.bl_rna.properties.keys() if name.startswith("show_object_viewport_")
-)
-
-
-class LogReporter:
-    """Passes messages to the log: a viewport has no reports. A message that holds on from one reading of the scene to
-    the next is logged once. `warnings`: how many there are of the scene as it was read last."""
-
-    LEVELS = {"INFO": logging.INFO, "WARNING": logging.WARNING, "ERROR": logging.ERROR}
-
-    def __init__(self):
-        self._before, self._now = {}, {}
-
-    def begin(self):
-        """The scene is read anew: what is not said again is no longer so."""
-        self._before, self._now = self._now, {}
-
-    def __call__(self, level, message):
-        """Log `message`; `level` is INFO, WARNING or ERROR."""
-        if message not in self._now and message not in self._before:
-            log.log(self.LEVELS[level], message)
-        self._now[message] = level
-
-    @property
-    def warnings(self):
-        return sum(level != "INFO" for level in self._now.values())
+_TRACING = 0.8  # of a frame's seconds; the rest is for showing what was traced, and for Blender
 
 
 class ViewportSession:
     """What one 3D viewport shows. Make it and use it where Blender's GPU context is active."""
 
     def __init__(self, engine):
-        self.engine = engine
-        self.report = LogReporter()
+        self._engine = weakref.ref(engine)  # which holds this: in a circle nothing is freed when it should be
         self.display = Display()
-        self.session = None
-        self.settings = None
-        self.stale = True  # whether Blender's data may differ from what is loaded
-        self.loaded = None  # fingerprint of what is loaded
-        self.shown = None  # which objects this viewport shows, as `shown_objects` has it, when they were read
-        self.statistics = None  # of what is loaded, until its first picture is there
-        self.view = None  # of what is being drawn: size in pixels, pixel size, fingerprint of the camera
-        self.coarse = False  # whether the first picture is being drawn
+        self.scene = None  # the `ViewportScene`
+        self.picture = None  # the `ViewportPicture` of what is loaded
+        self.version = None  # of what is loaded, in the picture
         self.error = ""
 
-    def mark(self):
-        """Blender says that something changed."""
-        self.stale = True
+    @property
+    def waiting(self):
+        """Whether the scene is being prepared in another thread."""
+        return self.scene is not None and self.scene.preparing
+
+    def tag_redraw(self):
+        """Have this viewport redrawn, from anywhere in the main thread."""
+        engine = self._engine()
+        if engine is not None:
+            engine.tag_redraw()
 
     def draw(self, context, depsgraph):
         """Draw into the bound frame buffer, and ask for another redraw while there is more to do."""
+        started = time.perf_counter()
+        settings = depsgraph.scene.conic
+        self._attach(context.space_data, depsgraph)
+        seconds = settings.preview_frame_seconds / (1 + self._others())
         try:
-            camera = camera_of_view(context.region, context.region_data)
-            size = context.region.width, context.region.height
-            shown = shown_objects(context.space_data)
-            if self.stale or shown != self.shown:
-                self.shown = shown
-                self.read(depsgraph, size, camera, context.space_data)
-            if not self.error:
-                self.advance(size, self.engine.get_preview_pixel_size(depsgraph.scene), camera)
+            view = view_of(context, depsgraph, self._engine().get_preview_pixel_size(depsgraph.scene))
+            if not settings.preview_pause:
+                self.scene.renew(depsgraph, view, context.space_data, seconds)
+                if self.scene.prepared:
+                    self.tag_redraw()
+            self.error = self.scene.error
+            if self.scene.ready and not view.is_empty:
+                left = _TRACING * seconds - (time.perf_counter() - started)
+                began = self._show(view, max(left, 0.3 * seconds), settings.preview_pause)
+                self._log(began, time.perf_counter() - started)
         except Exception as error:  # a view that raises would do so at every redraw
-            self.error = sentence_of(error)
-            if is_defect(error):
-                self.report("ERROR", "".join(traceback.format_exception(error)))
-        if self.error:
-            self.engine.update_stats("Conic", self.error)
+            self.error = self.scene.explain(error)
+        self._tell(settings.preview_pause, time.perf_counter() - started)
 
-    def read(self, depsgraph, size, camera, space):
-        """Read the scene; load it unless it is what is loaded: selecting an object changes nothing."""
-        self.stale, self.error = False, ""
-        self.report.begin()
-        statistics, reading = Statistics("Viewport", width=size[0], height=size[1]), SyncStatistics()
-        with timed(statistics.seconds, "read"):
-            scene = sync_scene(depsgraph, *size, camera=camera, report=self.report, space=space, statistics=reading)
-            settings = sync_settings(depsgraph.scene_eval, True)
-            with timed(reading.seconds, "compare"):
-                found = fingerprint((replace(scene, camera=None), settings))
-        statistics.add_reading(reading)
-        if found == self.loaded:
-            return
-        self.loaded = self.view = None  # if what follows fails, nothing is
-        self.session = self.session or Session(new_device())
-        self.session.build(scene, settings)
-        del scene  # the session has it in its own form; uploading takes memory too
-        self.session.upload()
-        self.loaded, self.settings, self.statistics = found, settings, statistics
+    def _others(self):
+        """How many other viewports of the scene have pictures that form, and share the time of a frame."""
+        pictures = (session.picture for session in self.scene.sessions if session is not self)
+        return sum(picture is not None and not picture.finished for picture in pictures)
 
-    def advance(self, size, pixel_size, camera):
-        """Trace for a moment, and show what is there."""
-        view = (size, pixel_size, fingerprint(camera))
-        if view != self.view:
-            self.start(size, pixel_size * COARSE, camera)
-            self.view, self.coarse = view, True
-        more = self.session.step(DRAW_SECONDS)
-        whole = not more or self.session.sample > 0
-        if self.coarse and whole:
-            self.display.keep(self.session.pixels())
-            self.publish()
-            self.start(size, pixel_size, camera)
-            self.coarse, more = False, True
-            self.display.draw()
-        else:
-            self.display.draw(self.session.pixels(), over_kept=not whole)
-        self.tell()
-        if more:
-            self.engine.tag_redraw()
+    def _attach(self, space, depsgraph):
+        """Find the scene that this viewport shows."""
+        scene = scene_of(space, depsgraph, self.scene)
+        if scene is not self.scene:
+            if self.scene:
+                self.scene.sessions.discard(self)
+            self.scene, self.picture, self.version = scene, None, None
+            scene.sessions.add(self)
 
-    def start(self, size, pixel_size, camera):
-        """Begin a picture whose pixels are squares of `pixel_size` in a region of `size`."""
-        pixels = (max(1, round(length / pixel_size)) for length in size)
-        self.session.start(*pixels, camera=camera, pixel_size=pixel_size)
+    def _show(self, view, seconds, paused):
+        """Trace for about `seconds`, and show what is there; whether the picture has begun anew."""
+        loaded = self.scene.loaded
+        if self.picture is None:
+            self.picture = ViewportPicture(Session(self.scene.device, loaded))
+        picture = self.picture
+        same_scene = self.version == loaded.version
+        began = not same_scene or picture.view is None or picture.view.key != view.key
+        if began:
+            self.version = loaded.version
+            picture.begin(view, seconds, same_scene)
+            self._publish()
+        elif not paused:
+            picture.advance(seconds)
+        self.display.draw(picture.layers, view)
+        if not picture.finished and not paused:
+            self.tag_redraw()
+        return began
 
-    def publish(self):
+    def _log(self, began, seconds):
+        picture = self.picture
+        record = viewport_log.Draw(began, picture.keeps, picture.step, picture.sample, picture.finished, seconds)
+        viewport_log.records.append(record)
+
+    def _publish(self):
         """The first picture of what is loaded is there: show what it is made of and what it cost."""
-        if self.statistics:
-            self.statistics.reach("first_picture")
-            self.statistics.samples = self.settings.samples
-            self.statistics.add_session(self.session.statistics())
-            publish(self.statistics)
-            self.statistics = None
+        statistics, self.scene.statistics = self.scene.statistics, None
+        if statistics:
+            statistics.reach("first_picture")
+            statistics.width, statistics.height = self.picture.view.size
+            statistics.samples = self.scene.loaded.drawn.settings.samples
+            statistics.add_session(self.picture.session.statistics())
+            publish(statistics)
 
-    def tell(self):
+    def _tell(self, paused, seconds):
         """Show in the viewport how far it is, and that there is something to read in the console."""
-        for warning in self.session.warnings:
-            self.report("WARNING", warning)
-        text = f"Sample {self.session.sample + 1}/{self.settings.samples}"
-        if self.report.warnings:
-            text += f" | {self.report.warnings} warning{'s' * (self.report.warnings > 1)}, see the console"
-        self.engine.update_stats("Conic", text)
+        text = self.error or " | ".join(self._state(paused, seconds))
+        self._engine().update_stats("Conic", text)
 
-
-def shown_objects(space):
-    """What of a 3D viewport's own settings decides which objects it shows; () for none, outside of a window.
-
-    They are no data of the scene. Blender 5.2 calls `view_update` for them too, but nothing promises that; it does when
-    objects enter or leave a local view or a hidden collection.
-    """
-    if space is None:
-        return ()
-    types = (getattr(space, name) for name in _SHOWN_TYPES)
-    return (space.local_view is not None, space.use_local_collections, *types)
+    def _state(self, paused, seconds):
+        """How far it is, in some words each."""
+        report = self.scene.report
+        if self.picture:
+            for warning in (*self.scene.loaded.warnings, *self.picture.session.warnings):
+                report("WARNING", warning)
+            drawn = self.scene.loaded.drawn
+            yield f"Sample {min(self.picture.sample + 1, drawn.settings.samples)}/{drawn.settings.samples}"
+            yield primitives_text(drawn.packed.statistics["primitives"])
+            yield f"{1000.0 * seconds:.0f} ms"
+        if paused:
+            yield "Paused"
+        elif not self.scene.settled:
+            yield "Loading"
+        if report.warnings:
+            yield f"{counted(report.warnings, 'warning')}, see the console"

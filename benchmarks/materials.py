@@ -97,8 +97,8 @@ def measure(name):
     session = Session(HeadlessDevice())
     loaded()
     seconds = dict(session.statistics()["seconds"])
-    source = session._source()
-    programs = _count_programs(session._packed.programs)
+    source = session.loaded.drawn.source
+    programs = _count_programs(session.loaded.drawn.packed.programs)
     change_constants(rng)
     loaded()
     row = {
@@ -106,7 +106,7 @@ def measure(name):
         "lines": source.fragment.count("\n"),
         "compile": seconds["compile"],
         "draw": seconds["trace"],
-        "changed": int(session._source() != source),
+        "changed": int(session.loaded.drawn.source != source),
     }
     print(json.dumps(row))
 

@@ -3,7 +3,9 @@
 from addon.engine import Camera, Light, Material, Scene, render
 """
 
+from .changes import Change
 from .errors import ConicError, DeviceError, SceneError
+from .loaded_scene import LoadedScene
 from .primitives import Cones, Cylinders, Discs, Planes, Spheres, Triangles
 from .scene import Camera, Geometry, Image, Instances, Light, LightKind, Material, Scene, Visibility, World
 from .session import Picture, Session, render
@@ -11,6 +13,7 @@ from .settings import Settings
 
 __all__ = [
     "Camera",
+    "Change",
     "Cones",
     "ConicError",
     "Cylinders",
@@ -21,6 +24,7 @@ __all__ = [
     "Instances",
     "Light",
     "LightKind",
+    "LoadedScene",
     "Material",
     "Picture",
     "Planes",

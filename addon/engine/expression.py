@@ -256,6 +256,10 @@ def absolute(x):
     return _operate("absolute", expression(x))
 
 
+def exp(x):
+    return _operate("exp", expression(x))
+
+
 def mean(x):
     """The mean of a colour's components; a number as it is."""
     x = expression(x)

@@ -29,24 +29,45 @@ def sample_offset(sample):
     return np.mod(0.5 + sample * np.array([1.0 / plastic, 1.0 / plastic**2]), 1.0)
 
 
+@dataclass
+class Pace:
+    """How many pixels a tile of TILE_SECONDS has: learned from tile to tile, and kept from picture to picture."""
+
+    pixels_per_tile: float = _FIRST_TILE_PIXELS
+
+    @property
+    def seconds_per_pixel(self):
+        return TILE_SECONDS / self.pixels_per_tile
+
+    def pixels(self, seconds):
+        """How many pixels take about `seconds`, at least 1."""
+        return max(int(self.pixels_per_tile * seconds / TILE_SECONDS), 1)
+
+    def learn(self, pixels, seconds):
+        """So many pixels took `seconds`. One measure may be wrong: it does not change much at once."""
+        wanted = pixels * TILE_SECONDS / max(seconds, 1e-6)
+        self.pixels_per_tile = float(np.clip(wanted, self.pixels_per_tile / 4, self.pixels_per_tile * 4))
+
+
 class Film:
     """Pixels being summed up sample by sample, tile by tile.
 
     `width`, `height`: of the whole frame; `border` (x, y, width, height): the part that is rendered. With
-    `corner_rays` the film has a row and a column more, and a pixel is the mean of its four corners.
+    `corner_rays` the film has a row and a column more, and a pixel is the mean of its four corners. `pace`: known from
+    pictures before. `bytes`: what it takes on the GPU.
     """
 
-    def __init__(self, device, width, height, *, border=None, samples=1, corner_rays=False, attachments=1):
+    def __init__(self, device, width, height, *, border=None, samples=1, corner_rays=False, attachments=1, pace=None):
         self.frame_size = (width, height)
         self.border = border or (0, 0, width, height)
         self.samples, self.corner_rays = samples, corner_rays
         self.width, self.height = self.border[2] + corner_rays, self.border[3] + corner_rays
         self._device = device
         self.target = device.target(self.width, self.height, attachments)
+        self.bytes = self.width * self.height * 16 * attachments
         self.unended = 0
-        self._sample = self._x = self._y = 0
-        self._pixels_per_tile = _FIRST_TILE_PIXELS
-        self._band = self._band_rows()
+        self.pace = pace or Pace()
+        self._sample = self._x = self._y = self._band = 0
 
     @property
     def finished(self):
@@ -62,28 +83,30 @@ class Film:
     def sample(self):
         return min(self._sample, self.samples - 1)
 
-    def next_tile(self):
-        """The tile to draw now; `advance` says that it was drawn."""
+    @property
+    def reached(self):
+        """(samples, rows, band, x): pixels have so many samples; those of the first rows, and those left of x in the
+        `band` of rows above, have one more."""
+        return self._sample, self._y, self._band, self._x
+
+    def next_tile(self, seconds=TILE_SECONDS):
+        """The tile to draw now, of a size that takes about `seconds`; `advance` says that it was drawn."""
+        wanted = self.pace.pixels(seconds)
+        if self._x == 0:
+            self._band = int(min(max(wanted // self.width, _BAND_ROWS), self.height - self._y))
         width = self.width - self._x
-        if self._pixels_per_tile < self.width * self._band:
-            width = min(width, max(16, self._pixels_per_tile // self._band))
+        if wanted < self.width * self._band:
+            width = min(width, max(16, wanted // self._band))
         return Tile((self._x, self._y, width, self._band), self._sample)
 
     def advance(self, tile, seconds):
-        """A tile was drawn in `seconds`: go on to the next, of a size that takes about TILE_SECONDS."""
-        pixels = tile.rectangle[2] * tile.rectangle[3]
-        wanted = pixels * TILE_SECONDS / max(seconds, 1e-6)
-        self._pixels_per_tile = int(np.clip(wanted, self._pixels_per_tile / 4, self._pixels_per_tile * 4)) or 1
+        """A tile was drawn in `seconds`: go on to the next."""
+        self.pace.learn(tile.rectangle[2] * tile.rectangle[3], seconds)
         self._x += tile.rectangle[2]
         if self._x >= self.width:
             self._x, self._y = 0, self._y + self._band
             if self._y >= self.height:
                 self._y, self._sample = 0, self._sample + 1
-            self._band = self._band_rows()
-
-    def _band_rows(self):
-        rows = max(self._pixels_per_tile // self.width, _BAND_ROWS)
-        return int(min(rows, self.height - self._y))
 
     def raster(self, sample, window):
         """Scale and offset (4,) from gl_FragCoord in the film to the camera's window (left, right, bottom, top)."""

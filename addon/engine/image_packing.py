@@ -4,10 +4,14 @@ A texel is four floats. It holds one pixel of floats; or two of bytes, each as (
 where all are opaque, four of bytes: float32 holds whole numbers below 2^24, on any driver.
 """
 
+import weakref
+
 import numpy as np
 
 from . import layout
+from .arena import Arena
 from .image import EXTENSIONS, INTERPOLATIONS
+from .residency import ResidentImage, Upload, is_same
 
 #: Bits of the field `coding`, as in GLSL.
 _SRGB, _DIVIDED = 1, 2
@@ -38,6 +42,51 @@ def pack_images(images, limit):
     return records, texture, warnings
 
 
+def add_images(images, limit, residency):
+    """Make the images those of a `Residency`; the `Upload` of what was not there, None where there is nothing."""
+    there = {id(resident.image() or resident): resident for resident in residency.images}  # some images are gone
+    new = list({id(image): image for image in images if id(image) not in there}.values())
+    if residency.reduced:  # what is reduced depends on all of them
+        if is_same([resident.image for resident in residency.images], images):
+            return None
+        return _all_anew(images, limit, residency)
+    records, texture, warnings = pack_images(new, limit)
+    arena, count = residency.arenas["image"], _texels_of(records)
+    start = arena.take(count)
+    if warnings or arena.end > limit:
+        return _all_anew(images, limit, residency)
+    there |= {id(image): made for image, made in zip(new, _residents(new, records, start), strict=True)}
+    for resident in {there[key] for key in there.keys() - set(map(id, images))}:
+        arena.give_back(resident.first, resident.texels)
+    residency.images = tuple(there[id(image)] for image in images)
+    return Upload(start, texture, count) if new else None
+
+
+def _all_anew(images, limit, residency):
+    records, texture, warnings = pack_images(images, limit)
+    arena = residency.arenas["image"] = Arena()
+    arena.take(_texels_of(records))
+    residency.images, residency.reduced = _residents(images, records, 0), tuple(warnings)
+    return Upload(0, texture, arena.end, anew=True) if images else None
+
+
+def _residents(images, records, start):
+    """`ResidentImage`s of images whose texels lie from `start` on."""
+    made = []
+    for image, record in zip(images, records, strict=True):
+        first = start + int(record["first"]) + (int(record["first_high"]) << layout.LOW_BITS)
+        record["first"], record["first_high"] = layout.split_index(first)
+        pixels = int(record["width"]) * int(record["height"])
+        texels = _shared_texels(pixels, int(record["packing"]))
+        made.append(ResidentImage(weakref.ref(image), record.copy(), first, texels))
+    return tuple(made)
+
+
+def _texels_of(records):
+    pixels = zip(*(records[name].astype(int).tolist() for name in ("width", "height", "packing")), strict=True)
+    return sum(_shared_texels(width * height, packing) for width, height, packing in pixels)
+
+
 def _packing(pixels):
     """Base 2 logarithm of how many pixels share a texel."""
     if pixels.dtype != np.uint8:
@@ -46,8 +95,12 @@ def _packing(pixels):
 
 
 def _texels(pixels, packing):
-    count = pixels.shape[0] * pixels.shape[1]
-    return -(-count >> packing)
+    return _shared_texels(pixels.shape[0] * pixels.shape[1], packing)
+
+
+def _shared_texels(pixels, packing):
+    """Texels of so many pixels."""
+    return -(-pixels >> packing)
 
 
 def _write(texels, pixels, packing):

@@ -6,8 +6,9 @@ import numpy as np
 
 from . import bvh, layout
 from .errors import SceneError
+from .residency import KeptTree
 from .scene import Instances
-from .tree_packing import pieces
+from .tree_packing import WORN, pieces
 
 
 @dataclass
@@ -23,42 +24,52 @@ class PlacedInstances:
 
 def blocks(scene, plan):
     """The `Instances` of a plan, the world's shapes first where they are among what is placed."""
-    if not plan.shapes:
-        return plan.placed
-    return [Instances(scene.shapes, np.eye(4), None), *plan.placed]
+    return [*([Instances(scene.shapes, np.eye(4), None)] if plan.shapes else []), *plan.placed]
 
 
 def place(placed, plan, materials, origin):
     """`PlacedInstances` of the `blocks`; `materials` is the `MaterialTable`."""
+    numbers, firsts = plan.placed_numbers, materials.firsts
+    if plan.shapes:
+        numbers, firsts = [0, *numbers], [0, *firsts]
     counts = [len(p) for p in placed]
     matrices = np.empty((sum(counts), 4, 4))
     start = 0
-    for p in placed:
+    for p, number in zip(placed, numbers, strict=True):
         block = matrices[start : start + len(p)]
         block[:] = p.matrices
-        if plan.in_world[plan.number(p.geometry)]:  # its primitives are relative to the origin themselves
+        if plan.in_world[number]:  # its primitives are relative to the origin themselves
             block[:, :3, 3] += block[:, :3, :3] @ origin
         block[:, :3, 3] -= origin
         start += len(p)
     return PlacedInstances(
         matrices,
-        np.repeat([plan.number(p.geometry) for p in placed], counts),
-        np.repeat([materials.first(p, plan) for p in placed], counts),
+        np.repeat(numbers, counts),
+        np.repeat(firsts, counts),
         np.repeat(np.array([int(p.visibility) for p in placed], np.int32), counts),
     )
 
 
-def upper_tree(instances, bounds):
-    """The tree over the instances' boxes; `bounds` (G, 2, 3): of the geometries by number."""
+def upper_tree(instances, bounds, kept=None):
+    """The tree over the instances' boxes, and what of it may be kept; `bounds` (G, 2, 3): of the geometries by number.
+
+    `kept`: the `KeptTree` of as many instances, most of which are the same. It serves again unless it is worn.
+    """
     count = len(instances.matrices)
     lower, upper = np.empty((count, 3), np.float32), np.empty((count, 3), np.float32)
     for rows in pieces(count):
         low, high = moved_boxes(bounds[instances.geometry[rows]], instances.matrices[rows])
         lower[rows], upper[rows] = bvh.rounded_outward(low, high)
+    if kept is not None:
+        order = kept.form.bvh.order
+        tree = kept.form.around(np.concatenate([-lower[order].T, upper[order].T]))
+        if np.isfinite(tree.boxes).all() and bvh.sah_cost(tree) <= WORN * kept.sah_cost:
+            return tree, kept
     try:
-        return bvh.build(lower, upper, leaf_size=1)
+        tree = bvh.build(lower, upper, leaf_size=1)
     except ValueError as error:
         raise SceneError(f"instances: {error}") from error
+    return tree, KeptTree(bvh.Form(tree), float(bvh.sah_cost(tree)))
 
 
 def write_records(hits, surfaces, instances, order, roots):
@@ -79,17 +90,17 @@ def write_records(hits, surfaces, instances, order, roots):
         hits["geometry"][rows], hits["visibility"][rows] = geometry, instances.visibility[picked]
 
 
-def write_attributes(texels, placed, attributes, order):
-    """Write the instances' attributes into `texels` (n, 4) of an `AttributePlan`; 0 where one lacks it."""
+def write_attributes(writer, placed, order):
+    """Write the instances' attributes by an `AttributeWriter`; 0 where one lacks it."""
     leaf = np.empty(len(order), np.int64)
     leaf[order] = np.arange(len(order))
-    for (name, _, kind), first in attributes.first.items():
-        if layout.KINDS[kind] != "instance":
+    for key in writer.first:
+        if layout.KINDS[key[2]] != "instance":
             continue
-        start = 0
+        texels, start = writer.texels(key), 0
         for p in placed:
-            if name in p.attributes:
-                texels[first + leaf[start : start + len(p)]] = p.attributes[name]
+            if key[0] in p.attributes:
+                texels[leaf[start : start + len(p)]] = p.attributes[key[0]]
             start += len(p)
 
 

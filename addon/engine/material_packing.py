@@ -45,28 +45,27 @@ _FLAGS = ("bounds_body", "cull_back", "cull_back_shadow")
 
 
 class MaterialTable:
-    """The materials of a scene in the order of their records, `materials`, and their `programs`. Raises SceneError
-    where one is used that is not there."""
+    """The materials of a scene in the order of their records, `materials`, and their `programs`. `firsts`: index of the
+    record of slot 0 of each of the plan's `placed`. Raises SceneError where one is used that is not there."""
 
     def __init__(self, scene, plan):
         self._count = max(len(scene.materials), 1)  # a scene without materials has the default one
         self.materials = list(scene.materials) or [Material()]
-        self._slots = [_slots(geometry) for geometry in plan.geometries]
+        self._slots = [geometry.slots for geometry in plan.geometries]
         self._blocks = {}
-        for _, part in scene.shapes.kinds():
+        for _, part in scene.shapes.parts if scene.shapes.slots > self._count else ():
             self._check(part.material, f"a {part.kind}")
         for planes in scene.planes:
             self._check(planes.material, "a plane")
-        for placed in plan.placed:
-            self.first(placed, plan)
+        self.firsts = [self._first(p, number) for p, number in zip(plan.placed, plan.placed_numbers, strict=True)]
         self._world = Material(diffuse=0.0, glow=scene.world.radiance)
         self.programs = NodePrograms()
         self._program_of = {id(m): self._program(m, self.programs) for m in (*self.materials, self._world)}
         self._check_images(scene)
 
-    def first(self, placed, plan):
-        """Index of the record of slot 0 of `Instances`; those with the same materials share a block."""
-        slots = self._slots[plan.number(placed.geometry)]
+    def _first(self, placed, number):
+        """Index of the record of slot 0 of `Instances` of a geometry; those with the same materials share a block."""
+        slots = self._slots[number]
         if placed.materials is None:
             self._check(np.arange(slots), f"instance {placed.name!r}")
             return 0
@@ -156,16 +155,20 @@ class MaterialTable:
     def _check_images(self, scene):
         users = [(material, f"material {number}") for number, material in enumerate(self.materials[: self._count])]
         for material, user in (*users, (self._world, "the world")):
-            for node in in_order(expressions_of(material)):
-                if isinstance(node, Call) and node.name.startswith("image_sample"):
-                    number = int(node.inputs[0].value[0])
-                    if number >= len(scene.images):
-                        raise SceneError(f"{user} uses image {number}, the scene has {len(scene.images)}")
+            for number in image_numbers(expressions_of(material)):
+                if number >= len(scene.images):
+                    raise SceneError(f"{user} uses image {number}, the scene has {len(scene.images)}")
 
 
 def expressions_of(material):
     """The members of a material that vary."""
     return tuple(v for name in _MEMBERS if isinstance(v := getattr(material, name), Call))
+
+
+def image_numbers(values):
+    """Numbers of the images that expressions look up, each once, in order."""
+    looked_up = (n for n in in_order(values) if isinstance(n, Call) and n.name.startswith("image_sample"))
+    return sorted({int(node.inputs[0].value[0]) for node in looked_up})
 
 
 def attribute_names(scene):
@@ -193,13 +196,3 @@ def _constant(value, kind, stand_in):
 
 def _text(number):
     return repr(float(np.float32(number)))
-
-
-def _slots(geometry):
-    """One more than the largest material slot that a geometry uses. Raises SceneError for negative ones."""
-    slots = 0
-    for _, part in geometry.kinds():
-        if part.material.min() < 0:
-            raise SceneError(f"geometry {geometry.name!r}: a {part.kind} uses material slot {int(part.material.min())}")
-        slots = max(slots, 1 + int(part.material.max()))
-    return slots

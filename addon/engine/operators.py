@@ -42,6 +42,7 @@ OPERATORS = {
     "less": Operator("({0} < {1} ? 1.0 : 0.0)", lambda a, b: np.where(a < b, 1.0, 0.0), "float"),
     "sqrt": Operator("sqrt(max({0}, 0.0))", lambda a: np.sqrt(np.maximum(a, 0.0))),
     "absolute": Operator("abs({0})", np.abs),
+    "exp": Operator("exp({0})", np.exp),
     "combine": Operator("vec3({0}, {1}, {2})", lambda *x: np.concatenate(x), "vec3", narrow=3),
     "mean": Operator("dot({0}, vec3(1.0 / 3.0))", lambda a: a.mean(keepdims=True), "float"),
     "luminance": Operator("dot({0}, vec3(0.2126, 0.7152, 0.0722))", lambda a: np.array([a @ LUMINANCE]), "float"),

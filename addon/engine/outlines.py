@@ -11,7 +11,7 @@ import numpy as np
 from . import shader_source
 
 _LEAST_STEP = 3.0  # pixels
-_DISPLAY_GAMMA = 2.2
+DISPLAY_GAMMA = 2.2
 
 
 class OutlinePass:
@@ -48,6 +48,11 @@ class OutlinePass:
         self._device.draw(self._lines, lines, rectangle, marks_read, uniforms)
         self._samples += 1
 
+    @property
+    def total(self):
+        """(texture, samples): the sum of the lines of so many samples, premultiplied."""
+        return self._device.attachment(self._targets[1], 0), self._samples
+
     def pixels(self):
         """Mean lines of the samples so far, (height, width, 4) float32, premultiplied."""
         total = self._device.read(self._targets[1], 0, (0, 0, *self._size))
@@ -78,6 +83,6 @@ def over(lines, pixels):
     """`lines` over `pixels`, both (h, w, 4) premultiplied. A pixel that is half black looks half as bright as white: it
     gives off less than half the light, as displays have it. Otherwise dark lines would look like strings of beads."""
     brightness = lines[..., :3].sum(axis=-1, keepdims=True) / np.maximum(3.0 * lines[..., 3:], 1e-6)
-    exponent = _DISPLAY_GAMMA + (1.0 - _DISPLAY_GAMMA) * np.clip(brightness, 0.0, 1.0)
+    exponent = DISPLAY_GAMMA + (1.0 - DISPLAY_GAMMA) * np.clip(brightness, 0.0, 1.0)
     alpha = 1.0 - (1.0 - np.clip(lines[..., 3:], 0.0, 1.0)) ** exponent
     return lines * (alpha / np.maximum(lines[..., 3:], 1e-6)) + (1.0 - alpha) * pixels

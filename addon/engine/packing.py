@@ -5,73 +5,64 @@ Nothing here draws. Lengths become relative to an origin near the camera, so tha
 people look.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import replace
 
 import numpy as np
 
-from . import bvh, instance_packing, layout
+from . import instance_packing, layout
+from .changes import Change
 from .errors import SceneError
 from .expression import is_zero
-from .image_packing import pack_images
+from .image_packing import add_images
 from .light_packing import pack_all_lights
 from .material_packing import MaterialTable
+from .origin import find_origin
+from .packed_scene import PackedScene
 from .plan import PLANE_ATTRIBUTES, check_texels, make_plan
 from .primitives import BY_KIND, Similarity, invertible
+from .residency import Residency, ResidentInstances, ResidentPlanes, Upload, is_same, references
 from .scene import Visibility
 from .timing import timed
-from .tree_packing import TreePacker, pieces
+from .tree_packing import AttributeWriter, TreePacker, pieces, rows_by_kind
 
 
-@dataclass
-class PackedScene:
-    """What a session uploads. `textures`: float32 (height, width, 4) by name. `frame`: values of the `Frame` record
-    that depend on the scene alone. `features` and `constants`: of the shader. `origin` (3,): what positions are
-    relative to. `bounds` (2, 3): of all but planes. `statistics`: see `Session.statistics`."""
-
-    origin: np.ndarray
-    textures: dict
-    frame: dict
-    features: frozenset
-    constants: dict
-    programs: str
-    world: object
-    world_programs: object
-    shadows_pass: dict  # whether shadow rays may pass through something, by whether they are tinted
-    bounds: np.ndarray
-    statistics: dict
-    warnings: list = field(default_factory=list)
-
-    @property
-    def lit_by_surfaces_alone(self):
-        """Whether surfaces that glow are the only lights."""
-        return self.frame["emitter_count"] > 0 and not self.frame["light_count"] and not self.world.lights
-
-
-def pack(scene, max_texture_size):
+def pack(scene, max_texture_size, before=None, *, keep=False):
     """Pack a scene for a device whose textures are at most `max_texture_size` wide and high.
+
+    `before`: the `Residency` of the scene whose textures are there; what both share is not packed again. `keep`:
+    whether to keep what makes later scenes that share much with this one cheap.
 
     Raises SceneError when the scene has no camera, refers to what does not exist, or does not fit; the latter before a
     tree is built.
     """
     if scene.camera is None:
         raise SceneError("the scene has no camera; add one")
-    seconds = {}
+    seconds, limit = {}, layout.most_texels(max_texture_size)
     with timed(seconds, "build"):
-        packed = _Packer(scene, layout.most_texels(max_texture_size)).pack()
+        try:
+            packed = _Packer(scene, limit, before, keep).pack()
+        except _NoRoomError:
+            packed = _Packer(scene, limit, None, keep).pack()
+            packed.change |= Change.ALL_TEXTURES
+            for upload in packed.uploads.values():
+                upload.anew = True
     packed.statistics["seconds"] = seconds
     return packed
 
 
-def _check_matrices(scene):
+def _check_matrices(scene, before):
     """Raise SceneError where the camera or an instance has a matrix that is not finite or cannot be inverted, or the
-    camera's window is empty."""
+    camera's window is empty. Those of the `Residency` before are known to be right."""
     camera = np.asarray(scene.camera.matrix, np.float64)
     if not invertible(camera[None])[0]:
         raise SceneError("the camera's matrix is not finite or not one of three axes of length 1")
     left, right, bottom, top = scene.camera.window
     if not np.isfinite(scene.camera.window).all() or left == right or bottom == top:
         raise SceneError(f"the camera's window {tuple(scene.camera.window)} has no width or no height")
+    known = {id(placed()) for placed in before.instances.placed} if before.instances else ()
     for placed in scene.instances:
+        if id(placed) in known:
+            continue
         if not all(invertible(placed.matrices[rows]).all() for rows in pieces(len(placed))):
             raise SceneError(
                 f"instance {placed.name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
@@ -85,81 +76,76 @@ def _bounds_of(top, trees):
     return next((tree.bounds for tree in trees.trees.values()), np.zeros((2, 3)))
 
 
-def _origin(scene, plan):
-    """The point (3,) that positions are taken relative to: the camera's, rounded to a grid much coarser than the
-    distances to what is near it. It is exactly 0 for scenes around 0, stays put while the camera moves, and does not
-    mind single things that lie far off."""
-    eye = np.asarray(scene.camera.matrix, np.float64)[:3, 3]
-    places = _sampled_places(plan)
-    if not len(places):
-        return np.zeros(3)
-    distance = float(np.quantile(np.linalg.norm(places - eye, axis=1), 0.25, method="lower"))
-    grid = 2.0 ** (np.ceil(np.log2(max(distance, 1e-30))) + 2.0)
-    return np.round(eye / grid) * grid
-
-
-def _sampled_places(plan, most=1000):
-    """Where things are, (n, 3): the middle of about `most` primitives of a kind in world space, the origin of as many
-    instances of other geometries."""
-    places = [np.zeros((0, 3))]
-    in_world = np.flatnonzero(plan.in_world)
-    for number in in_world:
-        for _, part in plan.geometries[number].kinds():
-            lower, upper = part.take(_spread(len(part), -(-most // len(in_world)))).bounds()
-            places.append((lower + upper) / 2.0)
-    stands = [p.matrices[:, :3, 3] for p in plan.placed if not plan.in_world[plan.number(p.geometry)]]
-    if stands:
-        stands = np.concatenate(stands)
-        places.append(stands[_spread(len(stands), most)])
-    return np.concatenate(places)
-
-
-def _spread(count, most):
-    """At most `most` indices below `count`, evenly spread."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.int64))
+class _NoRoomError(Exception):
+    """There is room for a scene, but not beside what lies there already."""
 
 
 class _Packer:
-    """State while a scene is packed. The constructor refuses what cannot be rendered, before anything large is made."""
+    """State while a scene is packed. The constructor refuses what cannot be rendered, before anything large is made.
 
-    def __init__(self, scene, limit):
-        self.scene, self.limit = scene, limit
-        self.plan = make_plan(scene)
+    `before`: the `Residency` that the scene before left behind, None where there is nothing.
+    """
+
+    def __init__(self, scene, limit, before, keep):
+        self.scene, self.limit, self.before, self.keep = scene, limit, before or Residency(), keep
+        self.numbers, self.there_is_more = self.before.numbers, before is not None
+        self.plan = make_plan(scene, self.numbers)
         self.plan.check(limit)
-        _check_matrices(scene)
+        _check_matrices(scene, self.before)
         self.materials = MaterialTable(scene, self.plan)
-        self.origin = _origin(scene, self.plan)
-        self.textures, self.frame, self.warnings = {}, {}, []
+        self.origin = find_origin(scene, self.plan, self.before.origin)
+        self.residency = self.before.copy()
+        self.residency.origin = self.origin
+        self.uploads, self.frame, self.warnings, self.change = {}, {}, [], Change.NONE
 
     def pack(self):
-        plan = self.plan
-        attributes = self._attribute_texels()
-        trees = TreePacker(plan, self.origin)
-        for number in plan.built:
-            trees.add(number, attributes)
+        plan, residency = self.plan, self.residency
+        written = self._geometries_to_write()
+        stand = not written.size and self._instances_stand()
+        top_nodes = 0 if stand else plan.top_nodes
+        trees = TreePacker(plan, written, residency, self.origin, top_nodes=top_nodes, keep=self.keep)
+        keys = self._attributes_to_write(written, stand)
+        attributes = AttributeWriter(plan.attributes, keys, residency.arenas["attribute"])
+        if plan.placed and not stand:
+            self._instance_rows = self._take_rows()
+        self._check_room()
+        for number in written.tolist():
+            trees.add(number, attributes, self._replaced_by(number))
+        residency.geometries |= trees.settle()
+        self._check_room()
+        self._add_attributes(written, attributes)
         with timed(trees.seconds, "instances"):
-            top = self._instances(trees.trees, attributes)
-        trees.finish(top)
-        self.textures |= trees.textures
-        planes = self._tables()
+            self._instances(trees, attributes, stand)
+        trees.finish()
+        self.uploads |= trees.uploads
+        self.refitted = trees.refitted
+        if attributes.upload.count:
+            self.uploads["attributes"] = attributes.upload
+            self.change |= Change.ATTRIBUTES
+        planes = self._tables(trees, attributes)
+        self._drop_what_went(written, stand)
         self._warn_of_darkness()
+        root = self._root(trees)
+        low, high = layout.split_index(root)
         self.frame |= {
             **self.lights.frame,
             "plane_count": len(planes),
+            "root": low,
+            "root_high": high,
             "root_count": len(trees.trees),
             "geometry_count": len(plan.geometries),
             "world_material": self.materials.world,
             "outline_attribute": self._outline_attribute(),
             "world_visibility": int(self.scene.world.visibility),
         }
+        top = residency.instances.tree if residency.instances else None
         depth = max((tree.depth for tree in trees.trees.values()), default=0) + (top.depth if top is not None else 0)
         return PackedScene(
             origin=self.origin,
-            textures=self.textures,
+            uploads=self.uploads,
             frame=self.frame,
             features=self._features(planes),
-            # References that can wait in a traversal, rounded up so that few programs are made.
-            constants={"BVH_STACK_SIZE": -(-(depth + 1) // 8) * 8},
+            constants={"BVH_STACK_SIZE": self._stack_size(depth + 1)},
             programs=self.materials.programs.text(),
             world=self.scene.world,
             world_programs=self.materials.world_programs,
@@ -167,48 +153,177 @@ class _Packer:
             bounds=_bounds_of(top, trees),
             statistics=self._statistics(trees, top, depth),
             warnings=self.warnings,
+            residency=residency,
+            change=self.change,
+            tables=self.tables,
+            table_texels=self.uploads["tables"].texels.reshape(-1, 4) if self.keep else None,
         )
+
+    def _check_room(self):
+        if self.there_is_more and not self.residency.fits(self.limit):
+            raise _NoRoomError
+
+    # What is there already
+
+    def _geometries_to_write(self):
+        """Numbers (n,) of the geometries whose records are not there."""
+        moved = self.origin.tobytes() if self.origin.any() else b""
+        needed = {}
+        for name, number, kind in self.plan.attributes.texels:
+            needed.setdefault(number, set()).add((name, kind))
+
+        def is_there(number):
+            resident = self.before.geometries.get(number)
+            if resident is None or not resident.is_of(
+                self.plan.geometries[number], moved if self.plan.in_world[number] else b""
+            ):
+                return False
+            # Attributes lie in the order of the tree, which must be known for those that are new.
+            return resident.kept or needed.get(number, set()) <= set(resident.attributes)
+
+        return np.array([number for number in self.plan.built.tolist() if not is_there(number)], np.int64)
+
+    def _replaced_by(self, number):
+        """The `Resident` whose tree a geometry may have again."""
+        replaced = self.plan.geometries[number].replaces
+        resident = self.before.geometries.get(self.numbers.get(id(replaced)))
+        same = resident and resident.kept and np.array_equal(resident.counts, self.plan.counts[number])
+        return resident if same else None
+
+    def _attributes_to_write(self, written, instances_stand):
+        """Keys of the `AttributePlan` whose values are not there."""
+        known, written = set(), set(written.tolist())
+        for number, resident in self.before.geometries.items():
+            if number not in written:
+                known |= {(name, number, kind) for name, kind in resident.attributes}
+        if instances_stand and self.before.instances:
+            place = len(self.plan.geometries), layout.KINDS.index("instance")
+            known |= {(name, *place) for name in self.before.instances.attributes}
+        if is_same(self.before.planes.planes, self.scene.planes):
+            known |= {(name, *PLANE_ATTRIBUTES) for name in self.before.planes.attributes}
+        return [key for key in self.plan.attributes.texels if key not in known]
+
+    def _add_attributes(self, written, attributes):
+        """Write the attributes that are new on geometries that are not, and those of planes."""
+        kinds, written = len(BY_KIND), set(written.tolist())
+        for number in {number for _, number, kind in attributes.first if kind < kinds} - written:
+            resident = self.residency.geometries[number]
+            parts = dict(self.plan.geometries[number].kinds())
+            for label, part, order in rows_by_kind(resident.kept.form.bvh, parts):
+                attributes.write((number, label), part, order)
+            ranges = resident.attributes | attributes.ranges(number)
+            self.residency.geometries[number] = replace(resident, attributes=ranges)
+        if not is_same(self.before.planes.planes, self.scene.planes):
+            self.residency.planes = ResidentPlanes(references(self.scene.planes), {})
+        planes = [key for key in attributes.first if key[1:] == PLANE_ATTRIBUTES]
+        if planes:
+            joined = self.scene.joined_planes()
+            ranges = dict(self.residency.planes.attributes)
+            for key in planes:
+                attributes.texels(key)[:] = joined.attributes[key[0]][:, 0]
+                ranges[key[0]] = attributes.first[key], len(joined)
+            self.residency.planes = ResidentPlanes(references(self.scene.planes), ranges)
+
+    def _drop_what_went(self, written, instances_stand):
+        """Give back where things lay that the scene has no more: the next scene may lie there."""
+        before, now, plan = self.before, self.residency, self.plan
+        gone = {n for n in before.geometries if n >= len(plan.geometries) or not plan.counts[n].any()}
+        for number in gone:
+            del now.geometries[number]
+        for number in gone | (set(written.tolist()) & set(before.geometries)):
+            now.drop_geometry(before.geometries[number])
+        if before.instances and not instances_stand:
+            now.drop_instances(before.instances)
+        if now.planes.planes != before.planes.planes:
+            now.drop_attributes(before.planes)
+        if gone or len(written) > self.refitted:
+            self.change |= Change.GEOMETRY
+        if self.refitted:
+            self.change |= Change.REFIT
 
     def _outline_attribute(self):
         name = self.scene.outline_attribute
         return self.plan.attributes.number(name) if name else -1
 
-    def _attribute_texels(self):
-        """Where the values of attributes go, (n, 4): the texels of their texture. Planes' are written already."""
-        attributes = self.plan.attributes
-        if not attributes.names:
-            return np.zeros((0, 4), np.float32)
-        self.textures["attributes"] = layout.data_texture(attributes.texels)
-        texels = self.textures["attributes"].reshape(-1, 4)
-        planes = self.scene.joined_planes()
-        for (name, *place), first in attributes.first.items():
-            if tuple(place) == PLANE_ATTRIBUTES:
-                texels[first : first + len(planes)] = planes.attributes[name][:, 0]
-        return texels
+    # Instances
 
-    def _instances(self, trees, attributes):
-        """Write the records of the instances; the upper tree, None without instances."""
+    def _instance_key(self):
+        """What the records of the instances are made from, but for the `Instances` themselves."""
+        plan, numbers, trees = self.plan, self.plan.placed_numbers, self.residency.geometries
+        return (
+            tuple(trees[number].tree.root for number in (*numbers, *([0] if plan.shapes else []))),
+            tuple(numbers),
+            plan.in_world[numbers].tobytes(),
+            tuple(self.materials.firsts),
+            self.origin.tobytes(),
+            plan.attributes.instances,
+        )
+
+    def _instances_stand(self):
+        """Whether the records of all instances are there; asked where no geometry is new."""
+        there, placed = self.before.instances, self.plan.placed
+        return there.is_of(placed, self._instance_key()) if there else not placed
+
+    def _instances(self, trees, attributes, stand):
+        """Write the records of the instances and the upper tree."""
+        plan, residency = self.plan, self.residency
+        if not stand:
+            if plan.placed or residency.instances:
+                self.change |= Change.INSTANCES
+            residency.instances = self._new_instances(trees, attributes) if plan.placed else None
+        there = residency.instances
+        if there:
+            first = there.first * layout.DATA_WIDTH
+            self.frame |= {"instance_first": first, "instance_surface_first": plan.instance_surface_first(first)}
+
+    def _take_rows(self):
+        """(First, number) of rows of the texture of instances."""
+        arena, texels = self.residency.arenas["row"], self.plan.instance_texels(0)
+        near = arena.end * layout.DATA_WIDTH + texels < 1 << layout.LOW_BITS
+        rows = -(-self.plan.instance_texels(0 if near else 1 << layout.LOW_BITS) // layout.DATA_WIDTH)
+        return arena.take(rows), rows
+
+    def _new_instances(self, trees, attributes):
         plan = self.plan
-        if not plan.placed:
-            return None
         placed = instance_packing.blocks(self.scene, plan)
         instances = instance_packing.place(placed, plan, self.materials, self.origin)
         bounds, roots = np.zeros((len(plan.geometries), 2, 3)), np.zeros(len(plan.geometries), np.int64)
-        for number, tree in trees.items():
+        for number, tree in trees.trees.items():
             bounds[number], roots[number] = tree.bounds, tree.root
-        top = instance_packing.upper_tree(instances, bounds)
-        self.frame |= {"instance_first": 0, "instance_surface_first": plan.instance_surface_first}
-        texture = layout.data_texture(plan.instance_texels)
+        before = self.before.instances.kept if self.before.instances else None
+        like_before = before is not None and len(before.form.bvh.order) == plan.leaves
+        top, kept = instance_packing.upper_tree(instances, bounds, before if like_before else None)
+        first, rows = self._instance_rows
+        start = first * layout.DATA_WIDTH
+        count = plan.instance_texels(start)
+        texture = layout.data_texture(count)
         hits = layout.records_of(texture, layout.INSTANCE)[: plan.leaves]
-        surfaces = layout.records_of(texture, layout.INSTANCE_SURFACE, plan.instance_surface_first)
+        surfaces = layout.records_of(texture, layout.INSTANCE_SURFACE, plan.instance_surface_first(start) - start)
         instance_packing.write_records(hits, surfaces, instances, top.order, roots)
-        instance_packing.write_attributes(attributes, placed, plan.attributes, top.order)
-        self.textures["instances"] = texture
-        return top
+        instance_packing.write_attributes(attributes, placed, top.order)
+        self.uploads["instances"] = Upload(start, texture, count)
+        ranges = {name: value for (name, _), value in attributes.ranges(len(plan.geometries)).items()}
+        built = trees.add_top(top)
+        kept = kept if self.keep else None
+        return ResidentInstances(self._instance_key(), references(plan.placed), first, rows, built, ranges, kept)
+
+    def _stack_size(self, needed):
+        """References that can wait in a traversal, rounded up so that few programs are made; as before, if that is not
+        much too large."""
+        size = -(-needed // 8) * 8
+        if not needed <= self.before.stack_size <= size + 16:
+            self.residency.stack_size = size
+        return self.residency.stack_size
+
+    def _root(self, trees):
+        """Index of the node where a traversal begins."""
+        if self.residency.instances:
+            return self.residency.instances.tree.root
+        return next((tree.root for tree in trees.trees.values()), 0)
 
     # What is few
 
-    def _tables(self):
+    def _tables(self, trees, attributes):
         """Write the records that share the texture `tables`; those of the planes."""
         planes, plane_surfaces = self._planes()
         self.lights = pack_all_lights(self.scene, self.plan, self.materials, self.origin)
@@ -222,18 +337,21 @@ class _Packer:
             "plane": planes,
             "plane_surface": plane_surfaces,
             "image": self._images(),
-            "attribute": self.plan.attributes.directory,
+            "attribute": self._directory(trees, attributes),
         }
         end = 0
         for name, array in records.items():
             self.frame[f"{name}_first"] = layout.next_start(end)
             end = self.frame[f"{name}_first"] + array.nbytes // 16
         check_texels(end, self.limit, "materials, lights, planes and images")
-        texture = self.textures["tables"] = layout.data_texture(end)
+        texture = layout.data_texture(end)
+        self.uploads["tables"] = Upload(0, texture, end, anew=True)
+        self.tables = {}
         for name, array in records.items():
             texels = array.view(np.float32).reshape(-1, 4)
             first = self.frame[f"{name}_first"]
-            texture.reshape(-1, 4)[first : first + len(texels)] = texels
+            self.tables[name] = slice(first, first + len(texels))
+            texture.reshape(-1, 4)[self.tables[name]] = texels
         return planes
 
     def _planes(self):
@@ -242,13 +360,24 @@ class _Packer:
             return layout.PLANE.zeros(0), layout.PLANE_SURFACE.zeros(0)
         return planes.transformed(Similarity(np.eye(3), 1.0, -self.origin)).records()
 
+    def _directory(self, trees, attributes):
+        """Records that say where the values of attributes lie."""
+        first, now, count = dict(attributes.first), self.residency, len(self.plan.geometries)
+        for number, resident in now.geometries.items():
+            first |= {(name, number, kind): texel for (name, kind), (texel, _) in resident.attributes.items()}
+        for name, (texel, _) in now.instances.attributes.items() if now.instances else ():
+            first[name, count, layout.KINDS.index("instance")] = texel
+        first |= {(name, *PLANE_ATTRIBUTES): texel for name, (texel, _) in now.planes.attributes.items()}
+        return self.plan.attributes.directory(first, trees.bases)
+
     def _images(self):
         """Image records; their texels go in the texture `images`, reduced where they would not fit."""
-        records, texture, warnings = pack_images(self.scene.images, self.limit)
-        if texture is not None:
-            self.textures["images"] = texture
-        self.warnings += warnings
-        return records
+        upload = add_images(self.scene.images, self.limit, self.residency)
+        if upload:
+            self.uploads["images"] = upload
+            self.change |= Change.IMAGES
+        self.warnings += self.residency.reduced
+        return np.array([image.record for image in self.residency.images], layout.IMAGE.dtype)
 
     def _warn_of_darkness(self):
         diffuse = any(not is_zero(material.diffuse) for material in self.materials.materials)
@@ -283,11 +412,11 @@ class _Packer:
 
     def _statistics(self, trees, top, depth):
         plan = self.plan
-        nodes = sum(tree.nodes for tree in trees.trees.values()) + (len(top) if top is not None else 0)
+        nodes = sum(tree.nodes for tree in trees.trees.values()) + (top.nodes if top is not None else 0)
         if plan.largest in trees.trees:
             cost = trees.trees[plan.largest].sah_cost
         else:
-            cost = float(bvh.sah_cost(top)) if top is not None else 0.0
+            cost = top.sah_cost if top is not None else 0.0
         return {
             "primitives": self.scene.primitive_counts(),
             "instances": sum(map(len, plan.placed)),

@@ -1,8 +1,10 @@
-"""What a scene needs of the GPU, known from counts alone: which records lie where, and whether all of them fit.
+"""What a scene needs of the GPU, known from counts alone, and whether all of it fits.
 
 Nothing large is made here, so that a scene which does not fit is refused before time and memory are spent on it.
 """
 
+import itertools
+import weakref
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,9 +14,11 @@ from . import layout
 from .errors import SceneError
 from .material_packing import attribute_names
 from .primitives import BY_KIND
+from .scene import Geometry
 
 _INSTANCE = layout.KINDS.index("instance")
 _IDENTITY = np.eye(4)
+_EMPTY = Geometry(name="none")
 
 #: Where planes stand in the directory of attributes, (geometry number, kind number): in world space.
 PLANE_ATTRIBUTES = (0, layout.KINDS.index("plane"))
@@ -22,26 +26,24 @@ PLANE_ATTRIBUTES = (0, layout.KINDS.index("plane"))
 
 @dataclass
 class Plan:
-    """Where records lie. G geometries, K kinds of primitives, both by number.
+    """What there is. G geometries, K kinds of primitives, both by number.
 
-    `geometries`: those with primitives once each, number 0 is the world's shapes, also where there are none. `placed`:
-    the `Instances` that show something. `in_world` (G,) bool: those whose own space is the world's, the shapes and what
-    stands there once by the identity. `counts`, `bases` (G, K) int64: number of primitives, index of the first among
-    the records of its kind. `attributes`: an `AttributePlan`.
+    `geometries`: those with primitives once each, number 0 is the world's shapes, also where there are none; an empty
+    one where a number is free. `placed`: the `Instances` that show something, `placed_numbers` those of their
+    geometries. `in_world` (G,) bool: those whose own
+    space is the world's, the shapes and what stands there once by the identity. `counts` (G, K) int64: number of
+    primitives. `attributes`: an `AttributePlan`.
     """
 
     geometries: list
     placed: list
     in_world: np.ndarray
     counts: np.ndarray
-    bases: np.ndarray
     attributes: "AttributePlan"
 
-    def number(self, geometry):
-        return self._numbers[id(geometry)]
-
     def __post_init__(self):
-        self._numbers = {id(geometry): number for number, geometry in enumerate(self.geometries)}
+        numbers = {id(geometry): number for number, geometry in enumerate(self.geometries)}
+        self.placed_numbers = [numbers[id(placed.geometry)] for placed in self.placed]
         self.shapes = int(self.counts[0].sum()) > 0
 
     @cached_property
@@ -60,14 +62,13 @@ class Plan:
         """Leaves of the upper tree: instances, the world's shapes as one of them; 0 where there are no instances."""
         return sum(map(len, self.placed)) + self.shapes if self.placed else 0
 
-    @cached_property
-    def instance_surface_first(self):
-        """Where the second record of the instances begins in their texture."""
-        return layout.next_start(self.leaves * layout.INSTANCE.texels)
+    def instance_surface_first(self, first):
+        """Where the second records of the instances begin if the first ones do at texel `first`."""
+        return layout.next_start(first + self.leaves * layout.INSTANCE.texels)
 
-    @cached_property
-    def instance_texels(self):
-        return self.instance_surface_first + self.leaves * layout.INSTANCE_SURFACE.texels
+    def instance_texels(self, first):
+        """Texels of the instances from texel `first` on."""
+        return self.instance_surface_first(first) + self.leaves * layout.INSTANCE_SURFACE.texels - first
 
     @cached_property
     def top_nodes(self):
@@ -76,18 +77,22 @@ class Plan:
 
     @cached_property
     def most_nodes(self):
-        """An upper bound of the nodes of all trees: no leaf of a binary tree is empty."""
-        sizes = self.counts.sum(axis=1)
-        return self.top_nodes + int(np.maximum(sizes[sizes > 0] - 1, 1).sum())
+        """An upper bound of the nodes of all trees."""
+        return self.top_nodes + self.most_nodes_of(self.built)
+
+    def most_nodes_of(self, numbers):
+        """An upper bound of the nodes of geometries' trees: no leaf of a binary tree is empty."""
+        return int(np.maximum(self.counts[numbers].sum(axis=1) - 1, 1).sum())
 
     def check(self, limit):
         """Raise SceneError where a texture would need more than `limit` texels: what, how many, what to do."""
         for cls, count in zip(BY_KIND, self.counts.sum(axis=0).tolist(), strict=True):
             for record in (cls.record, cls.surface_record):
                 check_texels(count * record.texels, limit, f"{count} {cls.kind}s")
-        check_texels(self.instance_texels, limit, f"{self.leaves} instances")
-        check_texels(self.attributes.texels, limit, f"the values of {len(self.attributes.names)} attributes")
-        entries = len(self.attributes.directory)
+        check_texels(self.instance_texels(0), limit, f"{self.leaves} instances")
+        values = sum(self.attributes.texels.values())
+        check_texels(values, limit, f"the values of {len(self.attributes.names)} attributes")
+        entries = self.attributes.width.size
         check_texels(entries * layout.ATTRIBUTE.texels, limit, f"a directory of {entries} attributes of geometries")
         primitives = int(self.counts.sum())
         check_texels(self.most_nodes * layout.NODE.texels, limit, f"the trees of {primitives + self.leaves} shapes")
@@ -104,58 +109,81 @@ def check_texels(texels, limit, what):
 
 @dataclass
 class AttributePlan:
-    """The attributes that materials name, and where their values lie.
+    """The attributes that materials name. N names, G geometries and the instances, K kinds, all by number.
 
-    `names`: by number. `directory` (names * (G + 1) * KIND_COUNT,) of `layout.ATTRIBUTE`, see there. `first`: first
-    texel by (name, geometry number, kind number); the instances stand at geometry G. `texels`: how many in all.
+    `width` (N, G + 1, K) int64: texels that each primitive has. `texels`: of all of them by (name, geometry number,
+    kind number), the instances stand at geometry G; what lacks the attribute is left out.
     """
 
     names: tuple
-    directory: np.ndarray
-    first: dict
-    texels: int
+    width: np.ndarray
+    texels: dict
 
     def number(self, name):
         """Number of an attribute."""
         return self.names.index(name)
 
+    @property
+    def instances(self):
+        """Names of those that instances have."""
+        return tuple(name for name, geometry, _ in self.texels if geometry == self.width.shape[1] - 1)
 
-def make_plan(scene):
-    """The `Plan` of a scene."""
+    def directory(self, first, bases):
+        """Records of `layout.ATTRIBUTE`; `first`: texel by the keys of `texels`, `bases` (G, K) int64: index of the
+        first primitive of each geometry among the records of its kind."""
+        base, start = np.zeros(self.width.shape, np.int64), np.zeros(self.width.shape, np.int64)
+        base[:, : len(bases), : bases.shape[1]] = bases
+        for name, *place in self.texels:
+            start[self.number(name), *place] = first[name, *place]
+        directory = layout.ATTRIBUTE.zeros(start.size)
+        directory["first"], directory["first_high"] = layout.split_index(start.ravel())
+        directory["base"], directory["base_high"] = layout.split_index(np.where(self.width, base, 0).ravel())
+        directory["width"] = self.width.ravel()
+        return directory
+
+
+def make_plan(scene, numbers=None):
+    """The `Plan` of a scene. `numbers`: see `Residency.numbers`."""
     placed = [p for p in scene.instances if len(p) and len(p.geometry)]
-    geometries = list({id(g): g for g in (scene.shapes, *(p.geometry for p in placed))}.values())
+    geometries = _numbered(scene.shapes, list({id(p.geometry): p.geometry for p in placed}.values()), numbers or {})
     counts = np.zeros((len(geometries), len(BY_KIND)), np.int64)
-    for row, geometry in zip(counts, geometries, strict=True):
-        for label, part in geometry.kinds():
-            row[label] = len(part)
-    bases = np.cumsum(counts, axis=0) - counts
-    plan = Plan(geometries, placed, np.arange(len(geometries)) == 0, counts, bases, None)
-    for p in placed:
-        plan.in_world[plan.number(p.geometry)] |= len(p) == 1 and np.array_equal(p.matrices[0], _IDENTITY)
+    sizes = [(number, label, len(part)) for number, g in enumerate(geometries) for label, part in g.parts]
+    if sizes:
+        rows, labels, lengths = zip(*sizes, strict=True)
+        counts[rows, labels] = lengths
+    plan = Plan(geometries, placed, np.arange(len(geometries)) == 0, counts, None)
+    for p, number in zip(placed, plan.placed_numbers, strict=True):
+        if len(p) == 1 and (p.matrices[0] == _IDENTITY).all():
+            plan.in_world[number] = True
     plan.attributes = _plan_attributes(scene, plan)
     return plan
 
 
+def _numbered(shapes, others, numbers):
+    """Geometries by number: those that have one keep it, the others take what is free."""
+    found = {0: shapes} | {number: g for g in others if (number := numbers.get(id(weakref.ref(g)), 0))}
+    free = (number for number in itertools.count(1) if number not in found)
+    kept = set(map(id, found.values()))
+    found |= {number: g for g, number in zip((g for g in others if id(g) not in kept), free, strict=False)}
+    return [found.get(number, _EMPTY) for number in range(max(found) + 1)]
+
+
 def _plan_attributes(scene, plan):
     names = attribute_names(scene)
-    shape = (len(names), len(plan.geometries) + 1, len(layout.KINDS))
-    width, base, texels = (np.zeros(shape, np.int64) for _ in range(3))
+    width = np.zeros((len(names), len(plan.geometries) + 1, len(layout.KINDS)), np.int64)
+    rows = np.zeros(width.shape, np.int64)
+    if not names:
+        return AttributePlan(names, width, {})
     for place, primitives in _parts_with_attributes(scene, plan):
-        base[:, *place] = plan.bases[place] if place[1] < len(BY_KIND) else 0
         for number, name in enumerate(names):
             values = primitives.attributes.get(name)
             if values is not None:
-                width[number, *place], texels[number, *place] = values.shape[1], values.shape[0] * values.shape[1]
+                rows[number, *place], width[number, *place] = values.shape[:2]
     for number, name in enumerate(names):
         if any(name in p.attributes for p in plan.placed):
-            width[number, -1, _INSTANCE], texels[number, -1, _INSTANCE] = 1, plan.leaves
-    first = (np.cumsum(texels) - texels.ravel()).reshape(shape)
-    directory = layout.ATTRIBUTE.zeros(width.size)
-    directory["first"], directory["first_high"] = layout.split_index(first.ravel())
-    directory["base"], directory["base_high"] = layout.split_index(base.ravel())
-    directory["width"] = width.ravel()
-    places = {(names[n], g, k): int(first[n, g, k]) for n, g, k in np.argwhere(width).tolist()}
-    return AttributePlan(names, directory, places, int(texels.sum()))
+            width[number, -1, _INSTANCE], rows[number, -1, _INSTANCE] = 1, plan.leaves
+    texels = {(names[n], g, k): int(rows[n, g, k] * width[n, g, k]) for n, g, k in np.argwhere(width).tolist()}
+    return AttributePlan(names, width, texels)
 
 
 def _parts_with_attributes(scene, plan):

@@ -63,14 +63,22 @@ def _look_at_matrix(eye, target, up):
     return matrix
 
 
+class _Token:
+    """Equal to itself alone; without content, where contents are compared."""
+
+
 class Geometry:
     """Primitives of any kinds in a space of their own; it gets one tree, and can stand in the scene many times.
 
-    Its primitives' `material` is a slot: an index into the `materials` of the instance.
+    Its primitives' `material` is a slot: an index into the `materials` of the instance. `replaces`: None, or a weak
+    reference to the Geometry of an earlier scene that has as many primitives of each kind, in the same order. `token`:
+    another object whenever something is added.
     """
 
     def __init__(self, *primitives, name=""):
         self.name = name
+        self.replaces = self._joined = self._slots = None
+        self.token = _Token()
         self._parts = {cls: [] for cls in BY_KIND}
         for part in primitives:
             self.add(part)
@@ -81,20 +89,39 @@ class Geometry:
             raise SceneError(f"{type(primitives).__name__} cannot stand in a geometry")
         if len(primitives):
             self._parts[type(primitives)].append(primitives)
+            self._joined = self._slots = None
+            self.token = _Token()
+
+    @property
+    def parts(self):
+        """((leaf label, primitives), ...) of each kind that is there; the same tuple until something is added."""
+        if self._joined is None:
+            for cls, parts in self._parts.items():
+                parts[:] = [cls.concatenate(parts)] if parts else []
+            self._joined = tuple((label, self._parts[cls][0]) for label, cls in enumerate(BY_KIND) if self._parts[cls])
+        return self._joined
 
     def kinds(self):
-        """Yield (leaf label, primitives) for each kind that is there."""
-        for label, cls in enumerate(BY_KIND):
-            if self._parts[cls]:
-                self._parts[cls] = [cls.concatenate(self._parts[cls])]
-                yield label, self._parts[cls][0]
+        """Iterate over `parts`."""
+        return iter(self.parts)
 
     def counts(self):
         """Number of primitives by kind; an absent kind is left out."""
         return {cls.kind: sum(map(len, parts)) for cls, parts in self._parts.items() if parts}
 
+    @property
+    def slots(self):
+        """One more than the largest material slot that is used. Raises SceneError for negative ones."""
+        if self._slots is None:
+            for _, part in self.parts:
+                if part.material.min() < 0:
+                    slot = int(part.material.min())
+                    raise SceneError(f"geometry {self.name!r}: a {part.kind} uses material slot {slot}")
+            self._slots = 1 + max((int(part.material.max()) for _, part in self.parts), default=-1)
+        return self._slots
+
     def __len__(self):
-        return sum(self.counts().values())
+        return sum(len(part) for parts in self._parts.values() for part in parts)
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,15 @@ What is large goes a piece at a time from the scene's own arrays into the arrays
 the scene is held in between, whatever the precision of the arithmetic.
 """
 
-from dataclasses import dataclass
+import weakref
+from dataclasses import replace
 
 import numpy as np
 
 from . import bvh, layout
 from .errors import SceneError
 from .primitives import BY_KIND, Similarity
+from .residency import BuiltTree, KeptTree, Resident, Upload
 from .timing import timed
 
 #: How much larger boxes are stored than they are, relative to the largest of their coordinates: what the intersection
@@ -22,41 +24,78 @@ _BOX_PADDING_ABSOLUTE = 1e-20
 _LEAF_SIZE = 8
 _INTERSECTION_COST = np.array([cls.intersection_cost for cls in BY_KIND], np.float32)
 
+#: Trees of so many primitives are kept for refits: smaller ones are built in no time.
+_WORTH_KEEPING = 4096
+#: A refitted tree that costs so much more than a built one is built.
+WORN = 1.3
+#: Of so many trees at once the cost of each is worth knowing.
+_FEW_TREES = 64
+
 #: Rows worked on at a time: their temporary arrays stay in the processor's cache.
 _PIECE = 1 << 15
 
 
-@dataclass(frozen=True)
-class BuiltTree:
-    """What is left of a tree when it has been packed. `bounds` (2, 3) of everything, `root` the index of its node."""
-
-    bounds: np.ndarray
-    root: int
-    nodes: int
-    depth: int
-    sah_cost: float
-
-
 class TreePacker:
-    """Builds the trees of the geometries of a plan and fills the textures of their records.
+    """Builds the trees of the geometries `numbers` of a plan and writes their records, in ranges that it takes from the
+    arenas of a `Residency`.
 
-    `textures`: by name, float32 (height, width, 4); those of the nodes come with `nodes`. `seconds`: by stage.
+    `uploads`: of the records, those of the nodes come with `finish`. `bases` (G, K): index of the first record of each
+    kind, by number. `trees`: `BuiltTree`s by number. `seconds`: by stage. `refitted`: how many trees were not built.
+    `keep`: whether trees are kept for refits.
     """
 
-    def __init__(self, plan, origin):
-        self.plan, self.seconds, self.trees = plan, {}, {}
+    def __init__(self, plan, numbers, residency, origin, *, top_nodes, keep):
+        self.plan, self.residency, self.keep = plan, residency, keep
+        self.seconds, self.trees, self.uploads, self.refitted = {}, {}, {}, 0
+        self._added = {}
         self._move = Similarity(np.eye(3), 1.0, -origin) if origin.any() else None
-        self._nodes, self._next = [], plan.top_nodes
-        self.textures = {}
-        for cls, count in zip(BY_KIND, plan.counts.sum(axis=0).tolist(), strict=True):
+        self._moved = origin.tobytes() if origin.any() else b""
+        self._are_few = len(numbers) <= _FEW_TREES
+        self.bases = np.zeros(plan.counts.shape, np.int64)
+        for number in np.setdiff1d(plan.built, numbers).tolist():
+            self.trees[number] = residency.geometries[number].tree
+            self.bases[number] = residency.geometries[number].bases
+        for label, cls in enumerate(BY_KIND):
+            counts = plan.counts[numbers, label]
+            first, count = residency.arenas[cls.kind].take(int(counts.sum())), int(counts.sum())
+            self.bases[numbers, label] = first + np.cumsum(counts) - counts
             for record in (cls.record, cls.surface_record) if count else ():
-                self.textures[record.texture] = layout.data_texture(count * record.texels)
+                texels = layout.data_texture(count * record.texels)
+                self.uploads[record.texture] = Upload(first * record.texels, texels, count * record.texels)
+        self._nodes, self._top_nodes, self._node_count, self.node_first = [], top_nodes, top_nodes, 0
 
-    def add(self, number, attribute_texels):
-        """Build the tree of a geometry and write its records, and its attributes into `attribute_texels` (n, 4)."""
+    def moved(self, number):
+        """The origin as bytes that a geometry's primitives are moved by, empty for none."""
+        return self._moved if self.plan.in_world[number] else b""
+
+    def add(self, number, attributes, replaced=None):
+        """Write the records of a geometry, and its attributes by an `AttributeWriter`. `replaced`: the `Resident` whose
+        tree may serve with new boxes, None where it must be built."""
         geometry = self.plan.geometries[number]
         parts = dict(geometry.kinds())
         move = self._move if self.plan.in_world[number] else None
+        tree = kept = None
+        if replaced is not None:
+            tree, kept, cost = self._refitted(number, parts, move, replaced.kept)
+        if tree is None:
+            tree, kept, cost = self._built(number, geometry.name, parts, move)
+        with timed(self.seconds, "records"):
+            for label, part, order in rows_by_kind(tree, parts):
+                attributes.write((number, label), part, order)
+            self.trees[number] = self._add_nodes(number, tree, cost)
+        self._added[number] = Resident(
+            weakref.ref(geometry),
+            geometry.token,
+            self.moved(number),
+            self.bases[number].copy(),
+            self.plan.counts[number].copy(),
+            self.trees[number],
+            attributes.ranges(number),
+            kept,
+        )
+
+    def _built(self, number, name, parts, move):
+        """Build a tree and write the records of its primitives; (tree, what is kept of it, its cost or 0)."""
         with timed(self.seconds, "bounds"):
             lower, upper = _bounds(parts.values(), move)
             labels = np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])
@@ -64,56 +103,146 @@ class TreePacker:
             try:
                 tree = bvh.build(lower, upper, labels, leaf_size=_LEAF_SIZE, intersection_cost=_INTERSECTION_COST)
             except ValueError as error:
-                raise SceneError(f"geometry {geometry.name!r}: {error}") from error
+                raise SceneError(f"geometry {name!r}: {error}") from error
             del lower, upper, labels
+            keep = self.keep and len(tree.order) >= _WORTH_KEEPING
+            # The cost of all trees would take its time where geometries are many; that of the largest says most.
+            cost = _cost(tree) if keep or number == self.plan.largest or (self.keep and self._are_few) else 0.0
         with timed(self.seconds, "records"):
-            start = 0
-            for label, part in parts.items():
-                order = tree.order[tree.run[label] : tree.run[label + 1]] - start
-                self._write_records(self.plan.bases[number, label], part, order, move)
-                self._write_attributes((number, label), part, order, attribute_texels)
-                start += len(part)
-            self._add_nodes(number, tree)
+            for label, part, order in rows_by_kind(tree, parts):
+                hits, surfaces = self._records(number, label, part)
+                for rows in pieces(len(order)):
+                    piece = part.take(order[rows])
+                    hits[rows], surfaces[rows] = (piece.transformed(move) if move else piece).records()
+        return tree, KeptTree(bvh.Form(tree), cost) if keep else None, cost
 
-    def _write_records(self, base, part, order, move):
-        """The rows `order` of `part`, in that order, from record `base` on."""
-        hits = layout.records_of(self.textures[part.record.texture], part.record)[base:]
-        surfaces = layout.records_of(self.textures[part.surface_record.texture], part.surface_record)[base:]
-        for rows in pieces(len(order)):
-            piece = part.take(order[rows])
-            hits[rows], surfaces[rows] = (piece.transformed(move) if move else piece).records()
+    def _refitted(self, number, parts, move, kept):
+        """Put a tree that is kept around other primitives and write their records, both in one go: most of the time
+        goes into bringing them in order. As `_built`; no tree where a new one would be much better."""
+        with timed(self.seconds, "refit"):
+            spans, end = np.empty((6, len(kept.form.bvh.order)), np.float32), 0
+            for label, part, order in rows_by_kind(kept.form.bvh, parts):
+                hits, surfaces = self._records(number, label, part)
+                for rows in pieces(len(order)):
+                    piece = part.take(order[rows])
+                    piece = piece.transformed(move) if move else piece
+                    lower, upper = bvh.rounded_outward(*piece.bounds())
+                    start, end = end, end + len(lower)
+                    np.negative(lower.T, out=spans[:3, start:end])
+                    spans[3:, start:end] = upper.T
+                    hits[rows], surfaces[rows] = piece.records()
+            if not np.isfinite(spans).all():
+                return None, None, 0.0  # building says what is wrong
+            tree = kept.form.around(spans)
+            cost = _cost(tree)
+        if cost > WORN * kept.sah_cost:
+            return None, None, 0.0
+        self.refitted += 1
+        return tree, kept, cost
 
-    def _write_attributes(self, place, part, order, texels):
-        for name in self.plan.attributes.names:
-            first = self.plan.attributes.first.get((name, *place))
-            if first is not None:
+    def _records(self, number, label, part):
+        """The two arrays of records that are to be uploaded, from those of a part of a geometry on."""
+        base = self.bases[number, label]
+        found = []
+        for record in (part.record, part.surface_record):
+            upload = self.uploads[record.texture]
+            found.append(layout.records_of(upload.texels, record)[base - upload.first // record.texels :])
+        return found
+
+    def _add_nodes(self, number, tree, cost):
+        root = self._node_count
+        nodes = self._new_nodes(len(tree))
+        write_nodes(nodes, tree, root, self.bases[number], np.arange(len(BY_KIND)))
+        self._node_count += len(tree)
+        return BuiltTree(tree.bounds, root, len(tree), tree.depth, cost)
+
+    def _new_nodes(self, count):
+        """Records of further nodes that are to be uploaded."""
+        self._nodes.append((layout.data_texture(count * layout.NODE.texels), count))
+        return layout.records_of(self._nodes[-1][0], layout.NODE)[:count]
+
+    def settle(self):
+        """Find the place of all nodes, now that their number is known; `Resident`s by number of what was added."""
+        self.node_first = self.residency.arenas["node"].take(self._node_count)
+        if self.node_first:
+            for texture, count in self._nodes:
+                move_nodes(layout.records_of(texture, layout.NODE)[:count], self.node_first)
+            for number, resident in self._added.items():
+                resident.tree = replace(resident.tree, root=resident.tree.root + self.node_first)
+                self.trees[number] = resident.tree
+        return self._added
+
+    def add_top(self, top):
+        """The upper tree `top`, whose nodes come before all others that are uploaded; its `BuiltTree`."""
+        kind = np.array([layout.KINDS.index("instance")])
+        write_nodes(self._new_nodes(self._top_nodes), top, self.node_first, np.zeros(1, np.int64), kind)
+        self._nodes.insert(0, self._nodes.pop())
+        return BuiltTree(top.bounds, self.node_first, self._top_nodes, top.depth, float(bvh.sah_cost(top)))
+
+    def finish(self):
+        """Make the upload of all nodes."""
+        if not self._node_count and self.node_first:
+            return
+        if len(self._nodes) == 1:
+            texture, _ = self._nodes.pop()
+        else:
+            texture, start = layout.data_texture(max(self._node_count, 1) * layout.NODE.texels), 0
+            nodes = layout.records_of(texture, layout.NODE)
+            while self._nodes:
+                part, count = self._nodes.pop(0)
+                nodes[start : start + count] = layout.records_of(part, layout.NODE)[:count]
+                start += count
+        texels = layout.NODE.texels
+        self.uploads["nodes"] = Upload(self.node_first * texels, texture, self._node_count * texels)
+
+
+def _cost(tree):
+    return bvh.sah_cost(tree, intersection_cost=_INTERSECTION_COST)
+
+
+def rows_by_kind(tree, parts):
+    """(kind number, primitives, (n,) rows of them in the order of the tree's leaves) of each of the `parts` that the
+    tree was built of, by kind number."""
+    start = 0
+    for label, part in parts.items():
+        yield label, part, tree.order[tree.run[label] : tree.run[label + 1]] - start
+        start += len(part)
+
+
+class AttributeWriter:
+    """Attributes that are to be uploaded: the values of the `keys` of an `AttributePlan`, in a range of an `Arena`.
+
+    `first`: texel by key.
+    """
+
+    def __init__(self, plan, keys, arena):
+        self.plan, self.first, self._ranges = plan, {}, {}
+        self._start = end = arena.take(sum(plan.texels[key] for key in keys))
+        for name, geometry, kind in keys:
+            count = plan.texels[name, geometry, kind]
+            self.first[name, geometry, kind] = end
+            self._ranges.setdefault(geometry, {})[name, kind] = (end, count)
+            end += count
+        self._texture = layout.data_texture(end - self._start)
+        self.upload = Upload(self._start, self._texture, end - self._start)
+
+    def texels(self, key):
+        """Where the values of a key go, (n, 4)."""
+        start = self.first[key] - self._start
+        return self._texture.reshape(-1, 4)[start : start + self.plan.texels[key]]
+
+    def write(self, place, part, order):
+        """Write the rows `order` of primitives at (geometry number, kind number), where they are asked for."""
+        for name in self.plan.names:
+            if (name, *place) in self.first:
                 values = part.attributes[name]
-                target = texels[first : first + values.shape[0] * values.shape[1]].reshape(-1, values.shape[1], 4)
+                target = self.texels((name, *place)).reshape(-1, values.shape[1], 4)
                 for rows in pieces(len(order)):
                     target[rows] = values[order[rows]]
 
-    def _add_nodes(self, number, tree):
-        nodes = layout.NODE.zeros(len(tree))
-        write_nodes(nodes, tree, self._next, self.plan.bases[number], np.arange(len(BY_KIND)))
-        self._nodes.append(nodes)
-        # The cost of all trees would take its time where geometries are many; that of the largest says most.
-        cost = bvh.sah_cost(tree, intersection_cost=_INTERSECTION_COST) if number == self.plan.largest else 0.0
-        self.trees[number] = BuiltTree(tree.bounds, self._next, len(tree), tree.depth, cost)
-        self._next += len(tree)
-
-    def finish(self, top):
-        """Make the texture of all nodes, those of the upper tree `top` (None: there is none) first."""
-        texture = layout.data_texture(max(self._next, 1) * layout.NODE.texels)
-        nodes = layout.records_of(texture, layout.NODE)
-        start = self.plan.top_nodes
-        if top is not None:
-            kind = np.array([layout.KINDS.index("instance")])
-            write_nodes(nodes[:start], top, 0, np.zeros(1, np.int64), kind)
-        while self._nodes:
-            part = self._nodes.pop(0)
-            nodes[start : start + len(part)] = part
-            start += len(part)
-        self.textures["nodes"] = texture
+    def ranges(self, number):
+        """(First texel, texels) of what lies here of a geometry, by name and kind number."""
+        return self._ranges.get(number, {})
 
 
 def pieces(count):
@@ -141,6 +270,21 @@ def write_nodes(records, tree, node_start, primitive_starts, kinds):
     kind it is."""
     for rows in pieces(len(tree)):
         _write_nodes(records[rows], tree, rows, node_start, primitive_starts, kinds)
+
+
+def move_nodes(records, offset):
+    """Let nodes (n,) of `layout.NODE` that lie `offset` further on find each other there."""
+    for rows in pieces(len(records)):
+        piece = records[rows]
+        for child in (0, 1):
+            leaf = piece[f"leaf_{child}"].astype(np.int64)
+            high = leaf >> layout.KIND_BITS + layout.COUNT_BITS
+            inner = leaf == layout.pack_leaf(0, 0, high)
+            low, high = layout.split_index(
+                piece[f"first_{child}"].astype(np.int64) + (high << layout.LOW_BITS) + offset
+            )
+            piece[f"first_{child}"][inner] = low[inner]
+            piece[f"leaf_{child}"][inner] = layout.pack_leaf(0, 0, high)[inner]
 
 
 def _write_nodes(records, tree, rows, node_start, primitive_starts, kinds):

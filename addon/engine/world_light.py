@@ -11,6 +11,7 @@ import numpy as np
 
 from . import layout, shader_source
 from .expression import constant_of
+from .material_packing import image_numbers
 from .node_programs import constant_texels
 from .operators import LUMINANCE
 
@@ -62,8 +63,8 @@ def world_digest(packed):
     digest.update(repr((packed.world.detail, constant, programs.text())).encode())
     if program:
         digest.update(constant_texels(program, 0, lambda key: -1))
-        if "images" in packed.textures:
-            digest.update(packed.textures["images"])
+        images = [packed.residency.images[number].serial for number in image_numbers((packed.world.radiance,))]
+        digest.update(repr(images).encode())
     return digest.digest()
 
 

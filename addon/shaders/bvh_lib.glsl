@@ -101,8 +101,8 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
   int stack_leaf[BVH_STACK_SIZE];
   float stack_t[BVH_STACK_SIZE];
   int top = 0;
-  int index = 0;
-  int leaf = 0;
+  int index = int(frame_root);
+  int leaf = LEAF_INNER(int(frame_root_high));
 #ifdef HAS_INSTANCES
   int instance = -1;
   int instance_top = -1; /* where the stack stood when the instance was entered */

@@ -57,6 +57,18 @@ def camera_of_view(_region, region_data):
     return Camera(matrix, _window(projection), orthographic, (start, end))
 
 
+def frame_in_view(camera, scene, region_data):
+    """Edges (left, right, bottom, top) of what a camera object renders, in a viewport that looks through it: the region
+    goes from 0 to 1. `camera`, `scene` are evaluated."""
+    corners = np.ones((4, 4))
+    corners[:, :3] = np.array(camera.data.view_frame(scene=scene), np.float64)
+    to_window = np.array(region_data.window_matrix, np.float64) @ np.array(region_data.view_matrix, np.float64)
+    seen = corners @ _without_scale(camera.matrix_world, camera.name).T @ to_window.T
+    seen = 0.5 * seen[:, :2] / seen[:, 3:] + 0.5
+    (left, bottom), (right, top) = seen.min(axis=0), seen.max(axis=0)
+    return left, right, bottom, top
+
+
 def _window(projection):
     """The picture's edges (left, right, bottom, top) at distance 1, or in world units, from a projection matrix (4, 4).
 

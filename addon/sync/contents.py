@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What data is drawn as: a `Shape`, or a Geometry of triangles, spheres or strands. Each is read once."""
 
+import weakref
 from dataclasses import dataclass, field, replace
 
 from ..engine.scene import Geometry
 from ..wording import counted
 from .attributes import of_elements, of_primitives, of_texture_space, title_of
+from .changes import geometry_of
+from .comparing import same_primitives
 from .curves import DEFAULT_RADIUS, Read, sampling_of, strands_of_curves, strands_of_edges, strands_of_legacy_curve
 from .islands import find_islands
 from .keys import data_key, original_key
+from .memory import Memory
 from .meshes import is_closed_mesh, read_mesh, read_triangles
 from .particle_hair import strands_of_particles
 from .points import read_points
+from .reports import Reports
 from .shapes import is_closed_shape
 from .strand_values import of_strands
 from .taken import Recognitions, taken_as
@@ -42,15 +47,27 @@ class Content:
     constants: dict = field(default_factory=dict)
 
 
-class Contents:
-    """Reads the contents of one scene, each once. `pixels`: a `PixelSizes`."""
+@dataclass(frozen=True)
+class Drawn:
+    """The `contents`, a tuple, of copies, and what a report should say after the name of their object: `notes`."""
 
-    def __init__(self, depsgraph, pixels, reports):
-        self._depsgraph, self._pixels, self._reports = depsgraph, pixels, reports
+    contents: tuple
+    notes: tuple = ()
+
+
+class Contents:
+    """Reads the contents of one scene, each once. `pixels`: a `PixelSizes`; `memory`: of earlier reads.
+
+    `before`: the geometries that may be replaced by what is read next; what is equal to one of them is the same object.
+    """
+
+    def __init__(self, depsgraph, pixels, memory=None):
+        self._depsgraph, self._pixels = depsgraph, pixels
+        self._memory = memory or Memory(Reports(lambda level, message: None))
         self._settings = depsgraph.scene_eval.conic
-        self._recognitions = Recognitions()
-        self._geometries = {}
-        self._closed = {}
+        self._recognitions = Recognitions(self._memory)
+        self._notes, self._tokens = [], ()
+        self.before = []
 
     def key(self, copies):
         """What the contents of copies depend on, besides their materials: copies that have it in common are drawn as
@@ -60,7 +77,14 @@ class Contents:
         return copies.kind, data_key(copies.data), by_object, settings.primitive, settings.strand_radius
 
     def of(self, copies, shadings):
-        """The contents, a tuple, of copies whose slots have `shadings`; what is not rendered is reported."""
+        """What copies whose slots have `shadings` are drawn as (`Drawn`)."""
+        self._tokens = geometry_of(original_key(copies.data)), geometry_of(original_key(copies.obj))
+        self._memory.depend(*self._tokens)
+        self._notes = []
+        contents = self._contents(copies, shadings)
+        return Drawn(contents, tuple(dict.fromkeys(self._notes)))
+
+    def _contents(self, copies, shadings):
         readers = {
             "MESH": self._mesh,
             "POINTCLOUD": self._points,
@@ -70,7 +94,7 @@ class Contents:
         }
         if copies.kind not in readers:
             what = _NOT_RENDERED.get(copies.kind, copies.kind.lower())
-            self._warn(copies, f"is not rendered: it is {what}")
+            self._notes.append(f" is not rendered: it is {what}")
             return ()
         keys = of_primitives({key for shading in shadings for key in shading.attributes})
         found = tuple(readers[copies.kind](copies, shadings, keys))
@@ -81,9 +105,6 @@ class Contents:
             return found
         return tuple(replace(content, constants=constants | content.constants) for content in found)
 
-    def _warn(self, copies, what):
-        self._reports.warn(f"object {copies.obj.name!r} {what}")
-
     def _mesh(self, copies, shadings, keys):
         obj, mesh = copies.obj, copies.data
         if len(mesh.edges) and obj.conic.strand_radius > 0.0:
@@ -91,13 +112,13 @@ class Contents:
         primitive = obj.conic.primitive
         if not len(mesh.polygons) and primitive != "PLANE":
             if primitive not in ("AUTO", "MESH") and not len(mesh.edges):
-                self._warn(copies, f"is not rendered: its {primitive.lower()} has no faces to take its size from")
+                self._notes.append(f" is not rendered: its {primitive.lower()} has no faces to take its size from")
             return
         taken = taken_as(primitive, mesh, shadings, self._settings.recognise, self._recognitions)
         if taken.problem:
-            self._reports.warn(f"object {obj.name!r}: rendered as a {taken.reason}")
+            self._notes.append(f": rendered as a {taken.reason}")
         if taken.shape is not None:
-            self._report_lost(obj, taken)
+            self._report_lost(taken)
             constants = {key: value for key, value in taken.constants.items() if value is not None}
             yield Content(taken.shape, taken.kind.lower(), is_closed_shape(taken.shape), constants)
             return
@@ -106,34 +127,35 @@ class Contents:
             matters = any(shading.transmits for shading in shadings)
             yield Content(geometry, "mesh", not matters or self._is_closed(mesh))
 
-    def _report_lost(self, obj, taken):
+    def _report_lost(self, taken):
         """Name what a shape that was chosen by hand cannot show."""
         for key, value in taken.constants.items():
             if value is None:
-                self._reports.warn(f"object {obj.name!r}: on an exact shape {title_of(key)} is not rendered")
+                self._notes.append(f": on an exact shape {title_of(key)} is not rendered")
 
     def _is_closed(self, mesh):
-        key = data_key(mesh)
-        if key not in self._closed:
-            self._closed[key] = is_closed_mesh(mesh)
-        return self._closed[key]
+        def read(_):
+            self._memory.depend(*self._tokens)
+            return is_closed_mesh(mesh)
+
+        return self._memory.get(("closed", data_key(mesh)), read)
 
     def _triangles(self, copies, shadings, keys, islands):
         """The Geometry of a mesh, shared by all objects that have the mesh and its uv needs in common."""
         mesh, maps = copies.data, tuple(shading.uv_map for shading in shadings)
         maps = maps if any(name is not None for name in maps) else ()
-        key = data_key(mesh), len(shadings), maps, keys, islands
-        if key not in self._geometries:
+
+        def read(note):
             found = self._islands(mesh, keys) if islands and not maps else None
             read = read_triangles(mesh, len(shadings), maps, keys, None if found is None else found.rest)
             if read.dropped:
                 dropped, verb = counted(read.dropped, "triangle"), "is" if read.dropped == 1 else "are"
-                self._reports.warn(
-                    f"object {copies.obj.name!r}: {dropped} with NaN or infinite vertices {verb} not rendered"
-                )
+                note(f": {dropped} with NaN or infinite vertices {verb} not rendered")
             parts = [*(found.primitives if found else ()), *([read.triangles] if read.triangles is not None else [])]
-            self._geometries[key] = Geometry(*parts, name=mesh.name) if parts else None
-        return self._geometries[key]
+            return Geometry(*parts, name=mesh.name) if parts else None
+
+        smooth_only = islands and self._settings.recognise == "SMOOTH"
+        return self._geometry(("triangles", data_key(mesh), len(shadings), maps, keys, islands, smooth_only), read)
 
     def _islands(self, mesh, keys):
         values = {key: (read, domain) for key, read, domain in of_elements(mesh, keys) if domain != "EDGE"}
@@ -142,19 +164,15 @@ class Contents:
     def _points(self, copies, shadings, keys):
         cloud = copies.data
 
-        def read():
+        def read(note):
             found = read_points(cloud, len(shadings), keys)
             if found.not_finite:
-                self._warn(
-                    copies, f"has {counted(found.not_finite, 'point')} not finite in place or radius, not rendered"
-                )
+                note(f" has {counted(found.not_finite, 'point')} not finite in place or radius, not rendered")
             if found.without_radius:
-                self._warn(
-                    copies, f"has {counted(found.without_radius, 'point')} without a radius above 0, not rendered"
-                )
+                note(f" has {counted(found.without_radius, 'point')} without a radius above 0, not rendered")
             return found.geometry
 
-        return self._once((data_key(cloud), len(shadings), keys), read, "point cloud")
+        return self._once(("points", data_key(cloud), len(shadings), keys), read, "point cloud")
 
     def _curves(self, copies, shadings, keys):
         curves, radius = copies.data, 1.0
@@ -173,14 +191,14 @@ class Contents:
     def _legacy_curve(self, copies, shadings, keys):
         obj = copies.obj
         if not copies.is_own:
-            self._warn(copies, "makes curves by geometry nodes, which are rendered from Blender 4.5 on")
+            self._notes.append(" makes curves by geometry nodes, which are rendered from Blender 4.5 on")
             return ()
         radius = obj.conic.strand_radius
         if not radius > 0.0:
             return ()
         return self._strands(
             copies,
-            (original_key(obj), len(shadings), keys),
+            (original_key(obj), data_key(obj.data), radius, len(shadings), keys),
             lambda sampling: strands_of_legacy_curve(obj, radius, sampling, self._depsgraph, len(shadings), keys),
         )
 
@@ -191,32 +209,54 @@ class Contents:
         )
 
     def _hair(self, copies, shadings, keys):
-        obj = copies.obj
-        key = original_key(obj), "hair", len(shadings), keys
-        if key not in self._geometries:
-            sampling = sampling_of(self._settings, self._pixels.of(copies))
-            render = self._depsgraph.mode == "RENDER"
-            self._geometries[key] = strands_of_particles(obj, sampling, render, len(shadings), keys)
-        for system in self._geometries[key]:
-            yield from self._strands(copies, (*key, system.name), lambda sampling, system=system: system.read)
+        obj, slots = copies.obj, len(shadings)
+        sampling = sampling_of(self._settings, self._pixels.of(copies))
+        render = self._depsgraph.mode == "RENDER"
+        for number, system in enumerate(strands_of_particles(obj, sampling, render, slots, keys)):
+            key = original_key(obj), "hair", slots, keys, number
+            yield from self._strands(copies, key, lambda _, system=system: system.read)
 
     def _strands(self, copies, key, read):
         """The content of strands, by `read(sampling)`."""
+        sampling = sampling_of(self._settings, self._pixels.of(copies))
 
-        def geometry():
-            found: Read = read(sampling_of(self._settings, self._pixels.of(copies)))
+        def geometry(note):
+            found: Read = read(sampling)
             if found.dropped:
                 verb = "is" if found.dropped == 1 else "are"
                 strands = counted(found.dropped, "strand")
-                self._warn(copies, f"has places or radii that are not finite: {strands} {verb} not rendered")
+                note(f" has places or radii that are not finite: {strands} {verb} not rendered")
             for warning in found.warnings:
-                self._reports.warn(f"object {copies.obj.name!r}: {warning}")
+                note(f": {warning}")
             return found.geometry
 
-        return self._once((*key, "strands"), geometry, "curves")
+        return self._once((*key, "strands", sampling), geometry, "curves")
 
     def _once(self, key, read, kind):
-        if key not in self._geometries:
-            self._geometries[key] = read()
-        geometry = self._geometries[key]
+        geometry = self._geometry(key, read)
         return () if geometry is None else (Content(geometry, kind),)
+
+    def _geometry(self, key, read):
+        """What `read(note)` gives, a Geometry or None, read once for a key; `note` takes what there is to report."""
+
+        def made(_):
+            notes = []
+            self._memory.depend(*self._tokens)
+            return self._as_before(read(notes.append)), notes
+
+        geometry, notes = self._memory.get(("geometry", *key), made)
+        self._notes += notes
+        return geometry
+
+    def _as_before(self, geometry):
+        """The Geometry itself, or the one before that it equals; if it has as many primitives it replaces that."""
+        counts = None if geometry is None else geometry.counts()
+        found = [old for old in self.before if old.counts() == counts]
+        like = next((old for old in found if old.name == geometry.name), found[0] if found else None)
+        if like is None:
+            return geometry
+        self.before.remove(like)
+        if geometry.name == like.name and same_primitives(geometry, like):
+            return like
+        geometry.replaces = weakref.ref(like)
+        return geometry

@@ -33,16 +33,16 @@ class _Group:
         return [make(self.obj, kind, self.data, matrices, **common) for kind in self.kinds]
 
 
-def copies_by_iterator(depsgraph, make, shown, takes=None):
+def copies_by_iterator(depsgraph, make, shown, takes=None, own_too=False):
     """All copies in a depsgraph, made by `make`. `shown(obj)`: whether an object of the scene is wanted.
 
-    `takes(obj)`: whether the instances that an object makes are wanted; with it those alone are given. None of
-    Blender's instances lives longer than its step, so values are copied.
+    `takes(obj)`: whether the instances that an object makes are wanted; with it those alone are given, with `own_too`
+    together with the object itself. None of Blender's instances lives longer than its step, so values are copied.
     """
     groups, wanted = {}, {}
     for instance in depsgraph.object_instances:
         is_instance = instance.is_instance
-        if not is_instance and takes is not None:
+        if not is_instance and takes is not None and not own_too:
             continue
         obj = instance.object
         root = instance.parent if is_instance else obj

@@ -71,6 +71,7 @@ class GeometryWalk:
         self._make, self._for_render = make, for_render
         self._sets = {}  # by object: what is asked for again comes as a copy
         self._references = {}
+        self.uids = set()  # of the objects and collections that were met
 
     def own(self, obj, matrix):
         """The copies, one or none, of an object as it stands there itself by `matrix` (1, 4, 4)."""
@@ -84,6 +85,7 @@ class GeometryWalk:
 
     def _recurse(self, found, root, obj, level, stack):
         """What an object makes that stands in the places of a level. `stack`: the objects that lead here."""
+        self.uids.add(original_key(obj))
         if obj.type == "META" and level.ids:
             return
         if obj.hide_render if self._for_render else obj.hide_viewport:
@@ -127,6 +129,7 @@ class GeometryWalk:
             self._recurse(found, root, obj, level, (*stack, obj))
 
     def _collection(self, found, root, obj, collection, level, stack):
+        self.uids.add(original_key(collection))
         offset = np.eye(4, dtype=np.float32)
         offset[3, :3] = -collection.instance_offset
         number = 0
@@ -140,6 +143,7 @@ class GeometryWalk:
             number += 2
 
     def _instance(self, found, root, obj, level):
+        self.uids.add(original_key(obj))
         is_original = obj.parent is not None and obj.parent.instance_type in ("VERTS", "FACES")
         if not is_original:  # those are there for their parent to put on its vertices or faces
             for kind in self._kinds(obj):

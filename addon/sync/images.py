@@ -3,12 +3,15 @@
 
 from dataclasses import dataclass
 
+import bpy
 import numpy as np
 
 from ..engine.expression import Parameter, call
 from ..engine.image import Image
 from .image_pixels import Linear, file_path, frame_path, read_file, read_image, read_tiles, to_linear
 from .keys import original_key
+from .memory import Memory
+from .reports import Reports
 
 #: Cycles' color for images that are missing.
 MISSING = (1.0, 0.0, 1.0)
@@ -30,22 +33,35 @@ class Picture:
         return call("image_sample_tiled", self.number, self.count, uv)
 
 
-class Images:
-    """The images of a scene at a frame."""
+#: The token of what depends on the frame.
+FRAME = "frame"
+#: Stands where an image was that is no longer used.
+_VACANT = Image(np.zeros((1, 1, 4), np.uint8), name="vacant")
 
-    def __init__(self, scene, frame=1):
+
+class Images:
+    """The images of a scene at a frame. `numbers`: (first, count) by key of those of earlier reads, which the scene has
+    already. `asked`: the numbers of all that were asked for, in order."""
+
+    def __init__(self, scene, frame=1, memory=None, numbers=None):
         self._scene, self._frame = scene, frame
-        self._read, self._pictures = {}, {}
+        self._memory = memory or Memory(Reports(lambda level, message: None))
+        self._numbers = {} if numbers is None else numbers
+        self.asked = []
 
     def picture(self, node, warn, *, divided=False):
         """The `Picture` of an image or environment texture node; None where it is missing.
 
-        `warn` takes what there is to report. `divided`: the color is to be had without its alpha.
+        `warn` takes what there is to report, and what of that is said once. `divided`: the color is to be had without
+        its alpha.
         """
         if node.image is None:
             warn("it has no image; pink is used instead")
             return None
-        tiles = self._tiles(node, warn)
+        image_key = self._key(node)
+        tiles, notes = self._memory.get(("image", *image_key), lambda previous: self._read(node, image_key, previous))
+        for note in notes:
+            warn(note, (image_key, note))
         if not tiles:
             return None
         sampling = {
@@ -53,40 +69,71 @@ class Images:
             "extension": getattr(node, "extension", "REPEAT"),  # a panorama has none
             "divided": divided and not any(tile.is_straight for tile in tiles.values()),
         }
-        key = (*self._key(node), *sampling.values())
-        if key not in self._pictures:
-            self._pictures[key] = self._add(node.image, tiles, sampling)
-        return self._pictures[key]
+        return self._numbered(
+            ("picture", *image_key, *sampling.values()), tiles, lambda: _images(node.image, tiles, sampling)
+        )
 
     def table(self, key, make):
         """The `Picture` of what `make` gives, pixels (h, w, 3 or 4) float32, mixed linearly and repeated; made once for
         a key."""
-        if key not in self._pictures:
-            number = self._scene.add_image(Image(make(), name=key[0]))
-            self._pictures[key] = Picture(Parameter(number, "int"))
-        return self._pictures[key]
+        return self._numbered(("table", *key), None, lambda: ([Image(make(), name=key[0])], False))
 
-    def _add(self, image, tiles, sampling):
-        """Add the images of tiles; their `Picture`."""
-        count = max(tiles) + 1
-        number = len(self._scene.images)
-        for tile in (tiles.get(i, _MISSING_TILE) for i in range(count)):
-            self._scene.add_image(Image(tile.pixels, name=image.name, srgb=tile.srgb, **sampling))
-        tiled = Parameter(count, "int") if image.source == "TILED" else None
-        return Picture(Parameter(number, "int"), tiled)
+    def finish(self):
+        """The read is over: what nobody asked for makes room."""
+        for key in [key for key in self._numbers if self._memory.last(key) is None]:
+            first, count = self._numbers.pop(key)
+            self._scene.images[first : first + count] = [_VACANT] * count
 
-    def _tiles(self, node, warn):
-        """The `Linear` by number of the tiles of a node's image, of most one; none, reported, where it has none."""
-        key = self._key(node)
-        if key not in self._read:
-            image, path = node.image, key[1]
-            tiles = read_tiles(image) if image.source == "TILED" else {0: self._stored(image, path, warn)}
-            lost = [1001 + number for number, stored in tiles.items() if stored is None]
-            if lost:
-                self._report_lost(image, path, lost if len(lost) < len(tiles) else (), warn)
-            self._read[key] = {number: to_linear(stored) for number, stored in tiles.items() if stored is not None}
-            self._report_spaces(image, self._read[key], warn)
-        return self._read[key]
+    def _numbered(self, key, source, make):
+        """The `Picture` of the images that `make` gives, together with whether they are tiles; it is made again where
+        `source` is another object than before."""
+
+        def made(_):
+            images, tiled = make()
+            number = self._place(key, images)
+            return Picture(Parameter(number, "int"), Parameter(len(images), "int") if tiled else None), source
+
+        picture = self._memory.get(key, made, id(source))[0]
+        first, count = self._numbers[key]
+        self.asked += range(first, first + count)
+        return picture
+
+    def _place(self, key, images):
+        """The number of the first of images, which get the place that they have had, or one that is vacant."""
+        known = self._numbers.get(key) or self._numbers.pop(self._frame_before(key), None)
+        if known is None and len(images) == 1:
+            known = next(((i, 1) for i, image in enumerate(self._scene.images) if image is _VACANT), None)
+        if known is None or known[1] != len(images):
+            if known is not None:
+                self._scene.images[known[0] : sum(known)] = [_VACANT] * known[1]
+            known = len(self._scene.images), len(images)
+            self._scene.images += images
+        self._scene.images[known[0] : sum(known)] = images
+        self._numbers[key] = known
+        return known[0]
+
+    def _frame_before(self, key):
+        """The key of what a sequence showed before, whose place is free now; None where there is none."""
+        if key[0] == "table":
+            return None
+        like = (key[1], *key[3:])
+        found = (other for other in self._numbers if other[0] == "picture" and (other[1], *other[3:]) == like)
+        return next((other for other in found if not self._memory.holds(other)), None)
+
+    def _read(self, node, key, previous):
+        """(the `Linear` by number of the tiles of a node's image, of most one; what there is to report). Without tiles
+        where it has none. What is as before is the same object."""
+        self._memory.depend(key[0], *([FRAME] if node.image.source in ("SEQUENCE", "MOVIE") else []))
+        image, path, notes = node.image, key[1], []
+        tiles = read_tiles(image) if image.source == "TILED" else {0: self._stored(image, path, notes.append)}
+        lost = [1001 + number for number, stored in tiles.items() if stored is None]
+        if lost:
+            self._report_lost(image, path, lost if len(lost) < len(tiles) else (), notes.append)
+        tiles = {number: to_linear(stored) for number, stored in tiles.items() if stored is not None}
+        self._report_spaces(image, tiles, notes.append)
+        if previous is not None and _alike(previous[0], tiles):
+            tiles = previous[0]
+        return tiles, tuple(notes)
 
     def _stored(self, image, path, warn):
         if image.source == "MOVIE":
@@ -114,3 +161,30 @@ class Images:
         elif image.source == "MOVIE":
             path = file_path(image)
         return original_key(image), path
+
+
+def _images(image, tiles, sampling):
+    """(the engine's images of tiles by number, pink where one is missing; whether they are tiles)."""
+    every = (tiles.get(i, _MISSING_TILE) for i in range(max(tiles) + 1))
+    made = [Image(tile.pixels, name=image.name, srgb=tile.srgb, **sampling) for tile in every]
+    return made, image.source == "TILED"
+
+
+def _alike(tiles, others):
+    """Whether the `Linear` of tiles are equal."""
+    return tiles.keys() == others.keys() and all(
+        vars(tile) | {"pixels": 0} == vars(others[number]) | {"pixels": 0}
+        and tile.pixels.dtype == others[number].pixels.dtype
+        and np.array_equal(tile.pixels, others[number].pixels)
+        for number, tile in tiles.items()
+    )
+
+
+def states(known):
+    """What of Blender's images with the uids `known` Blender does not report, by uid."""
+    return {uid: _state(image) for image in bpy.data.images if (uid := original_key(image)) in known}
+
+
+def _state(image):
+    settings = image.colorspace_settings
+    return image.source, image.filepath, image.alpha_mode, settings.name, settings.is_data, tuple(image.size)

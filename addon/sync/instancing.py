@@ -16,7 +16,7 @@ from .geometry_sets import GeometryWalk, UnknownInstancerError
 from .keys import original_key
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, slots=True)
 class Copies:
     """Copies of one piece of data in the world.
 
@@ -73,6 +73,11 @@ class Copies:
         return attributes.instance_random_ids(self.obj.name, self.instancer.name, ids.view(np.uint32))
 
 
+#: Objects of these types show themselves alone, unless they are instancers or have modifiers of `_MAKERS`.
+_PLAIN = {"MESH", "LIGHT", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
+_MAKERS = {"NODES", "PARTICLE_SYSTEM", "MESH_SEQUENCE_CACHE"}
+
+
 def copies_in(depsgraph, shown=None, iterate_all=False):
     """All `Copies` in a depsgraph, a list.
 
@@ -80,73 +85,83 @@ def copies_in(depsgraph, shown=None, iterate_all=False):
     compare.
     """
     shown = shown or (lambda obj: True)
-    if iterate_all or not has_geometry_sets():
+    if iterate_all:
         return dupli_iterator.copies_by_iterator(depsgraph, Copies, shown)
-    return _Scene(depsgraph, shown).copies()
+    scene = SceneCopies(depsgraph, shown)
+    found = [scene.of(number) for number in range(len(scene.objects))]
+    by_iterator = {uid for uid, of_object in zip(scene.uids, found, strict=True) if of_object.by_iterator}
+    return [copies for of_object in found for copies in of_object.copies] + scene.others(by_iterator)
 
 
-class _Scene:
-    """The objects of a depsgraph, read by geometry sets, with the iterator for instancers of the older kinds."""
+@dataclass(frozen=True, slots=True)
+class ObjectCopies:
+    """The copies of an object and of what it makes. `by_iterator`: what it makes only Blender's iterator tells, before
+    Blender 4.5 itself too. `uids`: of all objects and collections that had a part in it."""
+
+    copies: tuple
+    by_iterator: bool = False
+    uids: frozenset = frozenset()
+
+
+class SceneCopies:
+    """The objects of a depsgraph: `objects`, their `uids` and where they are, `matrices` (n, 4, 4) float32."""
 
     def __init__(self, depsgraph, shown):
-        self._depsgraph, self._shown = depsgraph, shown
+        self._depsgraph, self.shown = depsgraph, shown
         self._walk = GeometryWalk(Copies, depsgraph.mode == "RENDER")
-        self._read = {}  # by uid of an instancer: whether the iterator has to give its copies
+        self.objects = list(depsgraph.objects)
+        self.uids = [obj.original.session_uid for obj in self.objects]
+        matrices = np.empty(len(self.objects) * 16, np.float32)
+        depsgraph.objects.foreach_get("matrix_world", matrices)
+        self.matrices = np.ascontiguousarray(matrices.reshape(-1, 4, 4).transpose(0, 2, 1))
 
-    def copies(self):
-        found = []
-        objects = list(self._depsgraph.objects)
-        matrices = np.empty(len(objects) * 16, np.float32)
-        self._depsgraph.objects.foreach_get("matrix_world", matrices)
-        matrices = np.ascontiguousarray(matrices.reshape(-1, 4, 4).transpose(0, 2, 1))
-        for i, obj in enumerate(objects):
-            if self._shown(obj):
-                matrix = matrices[i : i + 1]
-                # Most objects: nothing but a mesh, which needs no further questions.
-                if obj.type == "MESH" and not len(obj.modifiers) and not obj.is_instancer:
-                    found.append(Copies(obj, "MESH", obj.data, matrix))
-                else:
-                    found += self._object(obj, matrix)
-            else:
-                self._read[original_key(obj)] = False
-        if self._needs_iterator():
-            late = []
-            found += dupli_iterator.copies_by_iterator(
-                self._depsgraph, Copies, self._shown, lambda obj: self._by_iterator(obj, late)
-            )
-            found += late
-        return found
-
-    def _object(self, obj, matrix):
-        """The copies of an object and of what it makes; without the latter where only the iterator knows them."""
-        own, made = self._walk.own(obj, matrix), []
+    def of(self, number):
+        """The `ObjectCopies` of an object by its number."""
+        obj, matrix = self.objects[number], self.matrices[number : number + 1]
+        if not self.shown(obj):
+            return ObjectCopies(())
+        # Most objects: nothing but a mesh, which needs no further questions.
+        if obj.type in _PLAIN and not obj.is_instancer and not any(m.type in _MAKERS for m in obj.modifiers):
+            return ObjectCopies((Copies(obj, obj.type, obj.data, matrix),))
+        if not has_geometry_sets():
+            return ObjectCopies((), by_iterator=True)
+        self._walk.uids = set()
+        own = self._walk.own(obj, matrix)
         try:
-            made = self._walk.made(obj, matrix)
-            self._read[original_key(obj)] = False
+            return ObjectCopies((*own, *self._walk.made(obj, matrix)), uids=frozenset(self._walk.uids))
         except UnknownInstancerError:
-            self._read[original_key(obj)] = True
-        return own + made
+            return ObjectCopies(tuple(own), by_iterator=True)
 
-    def _needs_iterator(self):
-        """Whether there may be instances that are not read yet. An instancer that does not show itself stands in no
-        list of objects."""
-        if any(self._read.values()):
-            return True
+    def has_others(self):
+        """Whether there may be instancers that are not in the list: those that do not show themselves."""
         name = "show_instancer_for_render" if self._depsgraph.mode == "RENDER" else "show_instancer_for_viewport"
         shows = np.ones(len(bpy.data.objects), bool)
         bpy.data.objects.foreach_get(name, shows)
         return not shows.all()
 
+    def others(self, by_iterator):
+        """What only Blender's iterator tells: the copies of the objects with the uids `by_iterator`, and those of
+        instancers that are not in the list."""
+        if not by_iterator and not self.has_others():
+            return []
+        late, listed = [], set(self.uids)
+
+        def takes(obj):
+            uid = original_key(obj)
+            return uid in by_iterator or (uid not in listed and self._by_iterator(obj, late))
+
+        own_too = not has_geometry_sets()
+        found = dupli_iterator.copies_by_iterator(self._depsgraph, Copies, self.shown, takes, own_too)
+        return found + late
+
     def _by_iterator(self, obj, late):
-        """Whether the iterator has to give the copies of an instancer; one met for the first time is read, to `late`,
-        if that is possible."""
-        uid = original_key(obj)
-        if uid not in self._read:
-            matrix = np.array(obj.matrix_world, np.float32)[None]
-            try:
-                made = self._walk.made(obj, matrix)
-                self._read[uid] = False
-                late += made if self._shown(obj) else []
-            except UnknownInstancerError:
-                self._read[uid] = True
-        return self._read[uid]
+        """Whether the iterator has to give the copies of an instancer; else they are read, to `late`."""
+        if not has_geometry_sets():
+            return True
+        matrix = np.array(obj.matrix_world, np.float32)[None]
+        try:
+            made = self._walk.made(obj, matrix)
+        except UnknownInstancerError:
+            return True
+        late += made if self.shown(obj) else []
+        return False

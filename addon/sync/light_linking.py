@@ -20,18 +20,23 @@ class _Group:
 
 
 class LightLinks:
-    """The groups of objects that the lights among `copies`, a list of `Copies`, are linked to."""
+    """The groups of objects that `lights`, evaluated objects, are linked to."""
 
-    def __init__(self, copies, reports):
+    def __init__(self, lights, reports):
         self._reports, self._groups = reports, {}
-        for linked in copies:
-            linking = linked.obj.original.light_linking
-            collections = linking.receiver_collection, linking.blocker_collection
-            if linked.kind == "LIGHT":
-                for collection in collections:
-                    self._add(collection, linked.obj)
-            elif any(collections):
-                reports.warn(f"object {linked.obj.name!r}: its light linking is not rendered, only that of lights is")
+        for light in lights:
+            for collection in _collections(light):
+                self._add(collection, light)
+
+    @property
+    def groups(self):
+        """All that decides which groups an object belongs to."""
+        return frozenset(self._groups.values())
+
+    def report_others(self, obj):
+        """Report an evaluated object, no light, that has light linking of its own."""
+        if any(_collections(obj)):
+            self._reports.warn(f"object {obj.name!r}: its light linking is not rendered, only that of lights is")
 
     def receivers(self, light):
         """The group of what the light of a Blender object lights alone; 0: it lights everything."""
@@ -69,3 +74,8 @@ class LightLinks:
             (included if entry.light_linking.link_state == "INCLUDE" else excluded).update(keys)
         bit = Visibility.group(len(self._groups))
         self._groups[original_key(collection)] = _Group(bit, frozenset(included), frozenset(excluded))
+
+
+def _collections(obj):
+    linking = obj.original.light_linking
+    return linking.receiver_collection, linking.blocker_collection

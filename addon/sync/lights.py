@@ -8,23 +8,25 @@ import numpy as np
 from ..engine.expression import constant_of
 from ..engine.primitives import invertible
 from ..engine.scene import Light, Visibility
+from .changes import ids_in
 from .closures import read_closure
 from .compat import flattened, light_factor
+from .keys import original_key
 from .nodes import output_source
 from .tree_reader import TreeReader
 from .visibility import seen_by
 
 
 class Lights:
-    """Collects the lights of a scene, instanced ones too."""
+    """Collects the lights of a scene, instanced ones too. `memory`: of what their nodes are."""
 
-    def __init__(self, scene, reports):
-        self._scene, self._reports = scene, reports
+    def __init__(self, scene, reports, memory):
+        self._scene, self._reports, self._memory = scene, reports, memory
 
     def add(self, obj, matrix, links):
         """Add the light of a Blender object that stands in the world by `matrix` (4, 4); `links`: the `LightLinks`."""
         light = obj.data
-        strength, falls_off = self._emission(light)
+        strength, falls_off = self._memory.get(("light", original_key(light)), lambda _: self._emission(light))
         color = np.multiply(light_factor(light, matrix), strength)
         if not np.isfinite([*matrix.ravel(), light.energy, *color]).all():
             self._reports.warn(f"light {obj.name!r} has a strength or a place that is not finite and gives no light")
@@ -40,6 +42,7 @@ class Lights:
     def _emission(self, light):
         """What the light's nodes multiply its energy by, color times strength of an Emission, and whether the light
         falls off with the distance."""
+        self._memory.depend(original_key(light), *ids_in(light.node_tree))
         tree, _kept = flattened(light)
         surface = output_source(tree, "Surface") if tree is not None else None
         if surface is None or surface.node is None:

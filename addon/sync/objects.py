@@ -14,6 +14,7 @@ from .compat import has_geometry_sets
 from .contents import Contents
 from .geometry_sets import components_of, geometry_set_of
 from .instancing import Copies
+from .memory import Memory
 from .pixel_sizes import PixelSizes
 from .raw_attributes import values_of
 from .reports import Reports
@@ -62,7 +63,7 @@ def _own_mesh(obj, depsgraph):
         return "MESH", _NO_FACES
     shadings = Shadings(Scene(), None, _silent())
     slots = tuple(shadings.of(material) for material in materials_of(obj, mesh)) or (shadings.of(None),)
-    taken = taken_as(primitive, mesh, slots, depsgraph.scene.conic.recognise, Recognitions())
+    taken = taken_as(primitive, mesh, slots, depsgraph.scene.conic.recognise, Recognitions(Memory(_silent())))
     return taken.kind, taken.reason
 
 
@@ -114,9 +115,9 @@ def _pieces(copies, depsgraph):
         camera = camera_of_render(None, depsgraph, render.resolution_x, render.resolution_y, reports=_silent())
     except SceneError:
         return None
-    contents = Contents(depsgraph, PixelSizes(camera, render.resolution_y, [copies]), _silent())
+    contents = Contents(depsgraph, PixelSizes(camera, render.resolution_y, [copies]))
     found = Counter()
-    for content in contents.of(copies, (Shadings(Scene(), None, _silent()).of(None),)):
+    for content in contents.of(copies, (Shadings(Scene(), None, _silent()).of(None),)).contents:
         found.update({part.kind: len(part) for _, part in content.drawn.kinds()})
     return found
 

@@ -3,8 +3,11 @@
 
 import numpy as np
 
-from .keys import data_key
+from .keys import data_key, original_key
 from .raw_attributes import read_positions
+
+#: The kinds of copies whose form depends on how large pixels are.
+STRANDS = {"CURVES", "CURVE", "HAIR"}
 
 
 class PixelSizes:
@@ -19,16 +22,26 @@ class PixelSizes:
     def __init__(self, camera, height, all_copies):
         self._camera = camera
         self._at_one = (camera.window[3] - camera.window[2]) / height
-        self._least = {}
+        self._least, self._owners = {}, {}
         for copies in all_copies:
-            if copies.kind in ("CURVES", "CURVE", "HAIR"):
+            if copies.kind in STRANDS:
                 key = self._key(copies)
+                self._owners.setdefault(key, (copies.kind, original_key(copies.obj)))
                 self._least[key] = min(self._least.get(key, np.inf), self._length(copies))
 
     def of(self, copies):
         """The length, for all copies of the data in the scene."""
         length = self._least.get(self._key(copies), np.inf)
         return length if np.isfinite(length) else 1.0
+
+    def settle(self, known):
+        """Keep to the lengths of an earlier read, as this gave them, where they are no more than twice or half as long;
+        the lengths, to be given to the next."""
+        for key, owner in self._owners.items():
+            length = (known or {}).get(owner, 0.0)
+            if 0.5 <= length / self._least[key] <= 2.0:
+                self._least[key] = length
+        return {owner: self._least[key] for key, owner in self._owners.items()}
 
     def _key(self, copies):
         return copies.kind, data_key(copies.data)

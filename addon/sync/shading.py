@@ -6,11 +6,14 @@ from dataclasses import dataclass, replace
 from ..engine.expression import Parameter, attribute_keys, is_zero
 from ..engine.material_packing import expressions_of
 from ..engine.scene import Material
+from ..fingerprint import fingerprint
 from .attributes import parts_of
+from .changes import ids_in
 from .closures import principled, read_absorption, read_closure
 from .compat import flattened, has_geometry_sets
 from .keys import original_key
 from .lobes import Lobes
+from .memory import ALWAYS, Memory
 from .nodes import output_source
 from .tree_reader import TreeReader, deep_recursion
 
@@ -28,48 +31,70 @@ class Shading:
     transmits: bool = False
     attributes: tuple = ()
 
+    @property
+    def needs(self):
+        """What geometries and attributes depend on."""
+        return self.index, self.uv_map, self.transmits, self.attributes
+
 
 class Shadings:
-    """The materials of a scene, each read once, when an object first needs it.
+    """The materials of a scene, each read once, when an object first needs it; it keeps its number from read to read.
 
-    `layers`: the view layer, scene and world, whose properties attributes of the view layer are.
+    `layers`: the view layer, scene and world, whose properties attributes of the view layer are. `numbers`: of the
+    materials of earlier reads, by key; the scene has them already.
     """
 
-    def __init__(self, scene, images, reports, layers=()):
+    def __init__(self, scene, images, reports, layers=(), memory=None, numbers=None):
         self._scene, self._images, self._reports, self._layers = scene, images, reports, layers
-        self._by_key, self._sheets = {}, {}
+        self._memory = memory or Memory(reports)
+        self._numbers = {} if numbers is None else numbers
 
     def of(self, material):
         """The `Shading` of a Blender material, or of None: an empty slot, or one whose material was deleted."""
-        key = None if material is None else original_key(material)
-        if key not in self._by_key:
-            self._by_key[key] = self._read(material)
-        return self._by_key[key]
+        key = "material", None if material is None else original_key(material)
+        return self._memory.get(key, lambda _: self._read(key, material), self._scene.outline_attribute)
 
     def of_sheet(self, shading):
         """The `Shading` of the same material on a surface that is not closed: what enters there is in no body."""
         if not shading.transmits:
             return shading
-        if shading.index not in self._sheets:
-            material = replace(self._scene.materials[shading.index], bounds_body=False)
-            self._sheets[shading.index] = replace(shading, index=self._scene.add_material(material))
-        return self._sheets[shading.index]
+        key, source = ("sheet", shading.index), self._scene.materials[shading.index]
 
-    def _read(self, material):
+        def made(previous):
+            if previous is not None and previous[1:] == (shading, source):
+                return previous
+            index = self._number(key, replace(source, bounds_body=False))
+            return replace(shading, index=index), shading, source
+
+        return self._memory.get(key, made, (shading, id(source)))[0]
+
+    def _number(self, key, material):
+        """The number of a material, the one that it has had; where it looks as before it stays the same object."""
+        number = self._numbers.get(key)
+        if number is None:
+            self._numbers[key] = number = self._scene.add_material(material)
+        elif fingerprint(material) != fingerprint(self._scene.materials[number]):
+            self._scene.materials[number] = material
+        return number
+
+    def _read(self, key, material):
         if material is None:
-            return Shading(self._scene.add_material(DEFAULT), attributes=self._keys(set()))
+            return Shading(self._number(key, DEFAULT), attributes=self._keys(set()))
+        self._memory.depend(original_key(material), *ids_in(material.node_tree))
         user = f"material {material.name!r}"
         reader = TreeReader(user, material, "MATERIAL", self._images, self._reports, self._layers)
         with deep_recursion():
             read = read_material(material, reader)
             reader.finish()
+        if reader.asked_layers:
+            self._memory.depend(ALWAYS)
         keys = self._keys(attribute_keys(expressions_of(read)))
         if any(parts_of(key)[0] == "instancer" for key in keys) and not has_geometry_sets():
             reader.warn(
                 "attributes of instances are rendered from Blender 4.5 on; properties of objects are used instead"
             )
         transmits = not is_zero(read.transmit)
-        return Shading(self._scene.add_material(read), reader.uv_map, material.name, transmits, keys)
+        return Shading(self._number(key, read), reader.uv_map, material.name, transmits, keys)
 
     def _keys(self, needed):
         """The attributes to read, sorted: those that a material needs and that of the scene's outlines."""

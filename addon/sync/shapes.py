@@ -14,7 +14,7 @@ _FLAT = 1e-6
 _PARALLEL = 1e-9
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shape:
     """Primitives that make up one exact shape, their material being the slot, in a space that `local` (4, 4) takes to
     the object's."""

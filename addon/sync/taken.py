@@ -7,7 +7,8 @@ from hashlib import blake2b
 import numpy as np
 
 from .attributes import of_mesh, of_primitives, title_of
-from .keys import data_key
+from .changes import geometry_of
+from .keys import data_key, original_key
 from .meshes import read_mesh
 from .recognise import Recognition, recognise
 from .shapes import Shape, fitted, plane_shape, shape_of
@@ -49,34 +50,37 @@ def _recognise_once(arrays):
 
 
 class Recognitions:
-    """What the meshes of one sync are recognised as, each read once."""
+    """What meshes are recognised as, each read once; `memory`: of earlier reads."""
 
-    def __init__(self):
-        self._recognised = {}
-        self._shapes = {}
+    def __init__(self, memory):
+        self._memory = memory
 
     def of(self, mesh, uv_map):
         """The Recognition of an evaluated mesh, together with one of its uv maps: its name, empty for the active one,
         None where the uv does not matter."""
-        key = data_key(mesh), uv_map
-        if key not in self._recognised:
-            self._recognised[key] = _recognise_once(read_mesh(mesh, uv_map))
-        return self._recognised[key]
+        key = "recognised", data_key(mesh), uv_map
+
+        def read(_):
+            self._memory.depend(geometry_of(original_key(mesh)))
+            return _recognise_once(read_mesh(mesh, uv_map))
+
+        return self._memory.get(key, read)
 
     def fitted(self, mesh, kind):
         """The Recognition as a shape of `kind` that is inscribed in the mesh's bounding box, None where it has none."""
-        key = data_key(mesh), kind, "fitted"
-        if key not in self._recognised:
+
+        def made(_):
+            self._memory.depend(geometry_of(original_key(mesh)))
             positions = read_mesh(mesh).positions
             positions = positions[np.isfinite(positions).all(axis=1)]
-            self._recognised[key] = fitted(kind, positions) if len(positions) else None
-        return self._recognised[key]
+            return fitted(kind, positions) if len(positions) else None
+
+        return self._memory.get(("fitted", data_key(mesh), kind), made)
 
     def shape(self, recognition):
         """The `Shape` of a Recognition, the same object each time."""
-        if id(recognition) not in self._shapes:
-            self._shapes[id(recognition)] = recognition, shape_of(recognition)
-        return self._shapes[id(recognition)][1]
+        key = "shape", id(recognition)  # which is no other's: it is kept along
+        return self._memory.get(key, lambda _: (recognition, shape_of(recognition)))[1]
 
 
 def taken_as(primitive, mesh, shadings, recognise_setting, recognitions):

@@ -21,8 +21,8 @@ class TreeReader:
     """
 
     def __init__(self, user, owner, kind, images, reports, layers=()):
-        self.user, self.owner, self.kind, self.images, self.layers = user, owner, kind, images, layers
-        self._reports = reports
+        self.user, self.owner, self.kind, self.images = user, owner, kind, images
+        self._reports, self._layers, self.asked_layers = reports, layers, False
         self._known, self._outputs, self._open, self._parameters, self._replaced = {}, {}, set(), {}, {}
         self.uv_map = None
 
@@ -67,10 +67,16 @@ class TreeReader:
             return as_type(call("point_uv"), "vec3")
         return as_type(attribute_color(key_of("geometry", name)), "vec3")
 
+    @property
+    def layers(self):
+        """View layer, scene and world; that they were asked for is noted."""
+        self.asked_layers = True
+        return self._layers
+
     # Reports
 
-    def warn(self, message):
-        self._reports.warn(f"{self.user}: {message}")
+    def warn(self, message, once=None):
+        self._reports.warn(f"{self.user}: {message}", once)
 
     def not_understood(self, source, instead):
         """Report the node of `source` with what is used instead of it: all of that in one message."""

@@ -42,6 +42,11 @@ class Visibilities:
         return self._made[bits]
 
 
+def layer_flags(view_layer):
+    """What the collections of a view layer say of how their objects are seen."""
+    return tuple((layer.holdout, layer.indirect_only) for layer in _and_children(view_layer.layer_collection))
+
+
 def _and_children(layer):
     yield layer
     for child in layer.children:

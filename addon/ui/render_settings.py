@@ -3,7 +3,7 @@
 
 import bpy
 
-from .base import PropertiesPanel
+from .base import ENGINE, PropertiesPanel
 
 
 class RenderPanel(PropertiesPanel):
@@ -20,6 +20,20 @@ class CONIC_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         column = layout.column(align=True)
         column.prop(context.scene.conic, "preview_samples")
         column.prop(context.scene.conic, "samples")
+
+
+class CONIC_RENDER_PT_viewport(RenderPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column()
+        column.prop(context.scene.conic, "preview_frame_seconds")
+        column.prop(context.scene.render, "preview_pixel_size", text="Pixel Size")
+        column.prop(context.scene.conic, "preview_pause")
 
 
 class CONIC_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
@@ -49,6 +63,23 @@ class CONIC_RENDER_PT_shapes(RenderPanel, bpy.types.Panel):
         column.prop(settings, "curve_tolerance" if settings.curve_sampling == "PIXELS" else "curve_steps")
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (CONIC_RENDER_PT_sampling, CONIC_RENDER_PT_light_paths, CONIC_RENDER_PT_shapes)
+def _draw_pause(header, context):
+    """The switch in the header of a rendered viewport."""
+    if context.engine == ENGINE and context.space_data.shading.type == "RENDERED":
+        settings = context.scene.conic
+        header.layout.prop(settings, "preview_pause", text="", icon="PLAY" if settings.preview_pause else "PAUSE")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (CONIC_RENDER_PT_sampling, CONIC_RENDER_PT_viewport, CONIC_RENDER_PT_light_paths, CONIC_RENDER_PT_shapes)
 )
+
+
+def register():
+    _register_classes()
+    bpy.types.VIEW3D_HT_header.append(_draw_pause)
+
+
+def unregister():
+    bpy.types.VIEW3D_HT_header.remove(_draw_pause)
+    _unregister_classes()

@@ -33,6 +33,8 @@ RENDER_PANELS = [
 DEFAULTS = {
     "samples": 16,
     "preview_samples": 4,
+    "preview_frame_seconds": 1 / 30,
+    "preview_pause": False,
     "max_depth": 8,
     "weight_cutoff": 1 / 512,
     "shadows": "TINTED",

@@ -1,76 +1,22 @@
 """The viewport's session, drawn into a frame buffer: Blender gives a GPU context outside of a render from 5.2 on."""
 
 import gc
+import threading
 import weakref
-from types import SimpleNamespace
 
 import bpy
 import gpu
 import numpy as np
 import pytest
 
-from addon import viewport_session
-from addon.viewport_session import ViewportSession
+from addon import viewport_log, viewport_scenes, viewport_session
+from addon.engine import LoadedScene, SceneError
+from addon.engine.devices.blender_gpu import BlenderDevice
+from addon.sync.scene_reader import SceneReader
+from addon.viewport_picture import STEPS
+from tests.blender.viewport_stand_in import HEIGHT, WIDTH, StandIn, draws, loads, mark
 
 pytestmark = pytest.mark.skipif(not hasattr(gpu, "init"), reason="no GPU context in the background before Blender 5.2")
-WIDTH, HEIGHT = 80, 60
-
-
-class Engine:
-    """What a viewport session asks of a RenderEngine."""
-
-    def __init__(self):
-        self.redraws, self.text, self.pixel_size = 0, "", 1
-
-    def tag_redraw(self):
-        self.redraws += 1
-
-    def update_stats(self, _stats, info):
-        self.text = info
-
-    def get_preview_pixel_size(self, _scene):
-        return self.pixel_size
-
-
-class View:
-    """A viewport that looks down on the origin from 10 above, 6 wide, and a frame buffer for it."""
-
-    def __init__(self):
-        gpu.init()
-        self.engine = Engine()
-        self.session = ViewportSession(self.engine)
-        self.space_data = None
-        self.region = SimpleNamespace(width=WIDTH, height=HEIGHT)
-        self.region_data = SimpleNamespace(view_matrix=np.eye(4), window_matrix=np.eye(4), is_perspective=False)
-        self.look_from(0.0)
-        self.texture = gpu.types.GPUTexture((WIDTH, HEIGHT), format="RGBA32F")
-        self.framebuffer = gpu.types.GPUFrameBuffer(color_slots=[self.texture])
-
-    def look_from(self, x):
-        self.region_data.view_matrix = np.eye(4)
-        self.region_data.view_matrix[:3, 3] = (-x, 0.0, -10.0)
-        self.region_data.window_matrix = np.diag([2.0 / 6.0, 2.0 / 4.5, -2.0 / 100.0, 1.0])
-
-    def redraw(self):
-        """One redraw; whether another one was asked for."""
-        before = self.engine.redraws
-        with self.framebuffer.bind():
-            self.framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0))
-            self.session.draw(self, bpy.context.evaluated_depsgraph_get())
-        return self.engine.redraws > before
-
-    def settle(self):
-        """Redraw until nothing more is asked for; the pixels (h, w, 4)."""
-        for _ in range(200):
-            if not self.redraw():
-                break
-        else:
-            raise AssertionError("it never ends")
-        pixels = np.empty(WIDTH * HEIGHT * 4, np.float32)
-        buffer = gpu.types.Buffer("FLOAT", pixels.size, pixels)
-        with self.framebuffer.bind():
-            self.framebuffer.read_color(0, 0, WIDTH, HEIGHT, 4, 0, "FLOAT", data=buffer)
-        return pixels.reshape(HEIGHT, WIDTH, 4)
 
 
 @pytest.fixture
@@ -81,24 +27,40 @@ def view():
     world.node_tree.nodes["Background"].inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
     bpy.context.scene.world = world
     bpy.context.scene.conic.preview_samples = 2
+    bpy.context.scene.conic.preview_frame_seconds = 0.2
     world.cycles_visibility.diffuse = False  # it lights nothing
-    view = View()
+    viewport_log.records.clear()
+    bpy.app.handlers.depsgraph_update_post.append(mark)
+    view = StandIn()
     yield view
-    vars(view).clear()  # what the GPU holds goes before Blender does
+    view.close()  # what the GPU holds goes before Blender does
+    bpy.app.handlers.depsgraph_update_post.remove(mark)
 
 
 @pytest.fixture
-def loads(monkeypatch):
-    """A list with an entry for each load of a scene."""
+def second(view):
+    """A second view of the same scene."""
+    second = StandIn()
+    yield second
+    second.close()
+
+
+@pytest.fixture
+def uploads(monkeypatch):
+    """A list with an entry for each texture of a scene that the device is given."""
     seen = []
-    build = viewport_session.Session.build
-
-    def counted(self, *arguments):
-        seen.append(True)
-        build(self, *arguments)
-
-    monkeypatch.setattr(viewport_session.Session, "build", counted)
+    for name in ("texture", "update", "grown"):
+        if hasattr(BlenderDevice, name):
+            monkeypatch.setattr(BlenderDevice, name, counted(getattr(BlenderDevice, name), seen))
     return seen
+
+
+def counted(function, seen):
+    def call(*arguments, **options):
+        seen.append(function.__name__)
+        return function(*arguments, **options)
+
+    return call
 
 
 def add_lamp():
@@ -117,28 +79,157 @@ def test_it_shows_the_scene_and_comes_to_rest(view):
     column, area = sphere_at(view.settle())
     assert column == pytest.approx(WIDTH / 2, abs=0.25)
     assert area == pytest.approx(np.pi * (WIDTH / 6) ** 2, rel=0.03)
-    assert view.engine.text.startswith("Sample 2/2")
+    assert view.engine.text.startswith("Sample 2/2 | 1 sphere | ")
     assert not view.redraw(), "at rest it stays"
 
 
-def test_turning_the_view_draws_anew_without_loading(view, loads):
+def test_turning_the_view_draws_anew_and_uploads_nothing(view, uploads):
     view.settle()
+    assert uploads
+    uploads.clear()
     view.look_from(1.0)
     assert view.redraw()
+    assert draws()[-1].began
     assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 - WIDTH / 6, abs=0.5)
-    assert len(loads) == 1
+    assert not uploads and len(loads()) == 1
 
 
-def test_a_change_is_shown_and_selecting_is_none(view, loads):
+def test_a_change_is_shown_and_selecting_is_none(view):
     view.settle()
+    count = len(draws())
     bpy.context.object.select_set(False)
-    view.session.mark()
-    assert not view.redraw() and len(loads) == 1
+    view.settle()
+    assert len(loads()) == 1 and not any(draw.began for draw in draws()[count:])
     bpy.context.object.location.x = 1.0
-    view.session.mark()
-    assert view.redraw()
     assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 + WIDTH / 6, abs=0.5)
-    assert len(loads) == 2
+    assert len(loads()) == 2
+
+
+# Pictures as they form
+
+
+def test_a_first_picture_of_few_pixels_is_whole_and_finer_ones_follow(view):
+    view.settle()
+    bpy.context.scene.conic.preview_frame_seconds = 0.001
+    bpy.context.scene.conic.preview_samples = 3
+    view.settle()
+    for x in (0.5, 1.0):  # what the first takes decides on the second
+        view.look_from(x)
+        view.redraw()
+        first = draws()[-1]
+        assert first.began and (view.pixels()[..., 3] == 1.0).all(), "all of it is there"
+    count = len(draws()) - 1
+    assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 - WIDTH / 6, abs=0.5)
+    steps, samples = ([getattr(draw, name) for draw in draws()[count:]] for name in ("step", "sample"))
+    assert steps == sorted(steps, reverse=True) and steps[-1] == 1 and set(steps) <= set(STEPS)
+    assert samples == sorted(samples) and samples[-1] == 3
+    assert sum(draw.began for draw in draws()[count:]) == 1
+
+
+def test_the_first_picture_has_as_many_pixels_as_the_frame_allows(view):
+    view.settle()
+    picture, pixels = view.session.picture, WIDTH * HEIGHT
+    for spent, before, step in (
+        (0.1, 16, 1),
+        (0.5, 4, 1),
+        (0.9, 4, 4),  # it would fit, but only just: the next might not
+        (0.9, 1, 1),
+        (2.0, 1, 4),
+        (10.0, 4, 4),
+        (20.0, 4, 8),
+        (1e6, 1, STEPS[-1]),
+    ):
+        picture._seconds_per_pixel, picture._first_step = spent / pixels, before
+        assert picture._choose_step(1.0) == step, (spent, before)
+
+
+@pytest.mark.parametrize("outlines", [False, True])
+def test_the_display_divides_what_the_film_sums_up(view, outlines):
+    """At any moment it shows what reading the film back gives."""
+    settings = bpy.context.scene.conic
+    settings.preview_samples, settings.use_outlines = 4, outlines
+    view.settle()
+    settings.preview_frame_seconds = 0.001
+    view.look_from(0.3)
+    seen = set()
+    while view.redraw():
+        picture = view.session.picture
+        if picture.sample > 0:
+            assert np.abs(view.pixels() - picture.session.pixels()).max() < 1e-5
+            seen.add(picture.session.film.reached)
+    assert np.abs(view.pixels() - picture.session.pixels()).max() < 1e-5
+    assert len(seen) > 1
+
+
+def test_large_pixels(view):
+    view.engine.pixel_size = 4
+    pixels = view.settle()
+    blocks = pixels.reshape(HEIGHT // 4, 4, WIDTH // 4, 4, 4)
+    assert (blocks == blocks[:, :1, :, :1]).all()
+    assert sphere_at(pixels)[1] == pytest.approx(np.pi * (WIDTH / 6) ** 2, rel=0.15)
+
+
+@pytest.mark.parametrize("change", ["pan", "zoom out", "resize"])
+def test_what_was_seen_before_is_shown_where_it_is_still_right(view, change):
+    """With a first picture of few pixels, the old one is as sharp as before, in its new place."""
+    view.settle()
+    bpy.context.scene.conic.preview_frame_seconds = 0.001
+    view.session.picture._seconds_per_pixel = 1.0
+    view.settle()
+    if change == "pan":
+        view.look_from(1.0)
+    elif change == "zoom out":
+        view.look_from(0.0, width=9.0)
+    else:
+        view.resize(100, 60)
+        view.look_from(0.0, width=7.5)
+    view.redraw()
+    assert draws()[-1].began and draws()[-1].kept and draws()[-1].step > 1
+    early = view.pixels()[..., 0]
+    late = view.settle()[..., 0]
+    assert np.abs(early - late).mean() < (0.01 if change != "zoom out" else 0.03)
+    assert not draws()[-1].kept
+
+
+def test_turning_keeps_nothing(view):
+    view.settle()
+    view.region_data.view_matrix = view.region_data.view_matrix.copy()
+    view.region_data.view_matrix[:3, :3] = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    view.redraw()
+    assert draws()[-1].began and not draws()[-1].kept
+
+
+# Settings of the viewport
+
+
+def test_pause_keeps_the_picture_and_turning_shows_a_coarse_one(view):
+    view.settle()
+    settings = bpy.context.scene.conic
+    settings.preview_pause = True
+    bpy.context.object.location.x = 1.0
+    assert not view.redraw() and "Paused" in view.engine.text
+    assert sphere_at(view.pixels())[0] == pytest.approx(WIDTH / 2, abs=0.25)
+    view.look_from(-1.0)
+    assert not view.redraw() and draws()[-1].began
+    assert sphere_at(view.pixels())[0] == pytest.approx(WIDTH / 2 + WIDTH / 6, abs=3.0)
+    settings.preview_pause = False
+    assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 + WIDTH / 3, abs=0.5)
+    assert draws()[-1].finished and "Paused" not in view.engine.text
+
+
+@pytest.mark.parametrize("name, value", [("preview_samples", 3), ("max_depth", 2), ("shadows", "OPAQUE")])
+def test_a_setting_of_the_picture_is_a_change(view, name, value):
+    view.settle()
+    setattr(bpy.context.scene.conic, name, value)
+    view.settle()
+    assert len(loads()) == 2
+
+
+def test_a_setting_of_the_viewport_is_none(view):
+    view.settle()
+    bpy.context.scene.conic.preview_frame_seconds = 0.1
+    view.settle()
+    assert len(loads()) == 1
 
 
 @pytest.fixture
@@ -151,15 +242,15 @@ def space():
         yield area.spaces.active
 
 
-def test_types_that_a_viewport_hides_are_not_drawn_without_an_update(view, loads, space):
+def test_types_that_a_viewport_hides_are_not_drawn_without_an_update(view, space):
     view.space_data = space
     assert sphere_at(view.settle())[1] > 0
     space.show_object_viewport_mesh = False
-    assert view.redraw(), "though nothing marks the session"
+    view.redraw()
     assert not (view.settle()[..., 0] < 0.5).any()
     space.show_object_viewport_mesh = True
     assert sphere_at(view.settle())[1] > 0
-    assert len(loads) == 3
+    assert len(loads()) == 3
 
 
 def test_local_view_shows_its_objects_without_an_update(view, space):
@@ -175,6 +266,109 @@ def test_local_view_shows_its_objects_without_an_update(view, space):
     assert sphere_at(view.settle())[1] == both
 
 
+def test_only_the_border_is_drawn(view, space):
+    view.space_data = space
+    whole = view.settle()
+    space.use_render_border = True
+    space.render_border_min_x, space.render_border_max_x = 0.25, 0.75
+    space.render_border_min_y, space.render_border_max_y = 0.5, 0.75
+    part = view.settle()
+    x, y, right, top = WIDTH // 4, HEIGHT // 2, 3 * WIDTH // 4, 3 * HEIGHT // 4
+    assert np.array_equal(part[y:top, x:right], whole[y:top, x:right])
+    part[y:top, x:right] = 0.0
+    assert not part.any()
+    space.use_render_border = False
+
+
+# Several viewports
+
+
+def test_viewports_of_one_scene_share_it(view, second, uploads):
+    view.settle()
+    count = len(uploads)
+    second.look_from(1.0)
+    shown = sphere_at(second.settle())[0], sphere_at(view.settle())[0]
+    assert shown == (pytest.approx(WIDTH / 2 - WIDTH / 6, abs=0.5), pytest.approx(WIDTH / 2, abs=0.25))
+    assert len(uploads) == count and len(loads()) == 1
+    bpy.context.object.location.x = 1.0
+    shown = sphere_at(second.settle())[0], sphere_at(view.settle())[0]
+    assert shown == (pytest.approx(WIDTH / 2, abs=0.5), pytest.approx(WIDTH / 2 + WIDTH / 6, abs=0.5))
+    assert len(loads()) == 2
+
+
+def test_a_scene_is_freed_with_its_last_viewport(view, second):
+    view.settle()
+    second.settle()
+    loaded = weakref.ref(view.session.scene.loaded)
+    gc.disable()
+    try:
+        view.close()
+        assert loaded() is not None and sphere_at(second.settle())[1] > 0
+        second.close()
+        assert loaded() is None and not viewport_scenes._scenes, "at once, without a search for garbage"
+    finally:
+        gc.enable()
+
+
+# Loading
+
+
+class Gate:
+    """Holds back whatever is prepared until it is opened."""
+
+    def __init__(self, monkeypatch):
+        self.opened = threading.Event()
+        prepare = LoadedScene.prepare
+
+        def wait(*arguments):
+            assert self.opened.wait(60.0)
+            return prepare(*arguments)
+
+        monkeypatch.setattr(LoadedScene, "prepare", wait)
+
+
+def test_the_old_scene_can_be_turned_while_the_new_one_is_prepared(view, monkeypatch):
+    view.settle()
+    gate = Gate(monkeypatch)
+    bpy.context.object.location.x = 1.0
+    view.redraw()
+    assert view.session.waiting and "Loading" in view.engine.text
+    assert sphere_at(view.pixels())[0] == pytest.approx(WIDTH / 2, abs=0.25)
+    view.look_from(-1.0)
+    while view.redraw():
+        pass
+    assert view.session.waiting and sphere_at(view.pixels())[0] == pytest.approx(WIDTH / 2 + WIDTH / 6, abs=0.5)
+    bpy.context.object.location.x = 0.5  # and again
+    view.redraw()
+    gate.opened.set()
+    assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 + 1.5 * WIDTH / 6, abs=0.5)
+    assert "Loading" not in view.engine.text
+
+
+def test_a_viewport_may_close_while_its_scene_is_prepared(view, monkeypatch):
+    view.settle()
+    gate = Gate(monkeypatch)
+    bpy.context.object.location.x = 1.0
+    view.redraw()
+    assert view.session.waiting
+    view.close()
+    gate.opened.set()
+    assert not viewport_scenes._scenes
+
+
+def test_undo_and_new_files_read_anew(view, monkeypatch):
+    forgotten = []
+    monkeypatch.setattr(SceneReader, "forget", lambda self: forgotten.append(self))
+    view.settle()
+    for name in ("undo_post", "redo_post", "load_post"):
+        for handler in getattr(bpy.app.handlers, name):
+            if handler.__module__ == viewport_scenes.__name__:
+                handler(bpy.context.scene, None)
+    assert len(forgotten) == 3 and not view.session.scene.settled
+    view.settle()
+    assert len(loads()) == 1, "it was the same"
+
+
 def test_statistics_are_published_once_for_what_is_loaded(view, monkeypatch):
     published = []
     monkeypatch.setattr(viewport_session, "publish", published.append)
@@ -186,75 +380,50 @@ def test_statistics_are_published_once_for_what_is_loaded(view, monkeypatch):
     assert found.primitives == {"sphere": 1} and found.objects == {"sphere": 1}
     assert found.seconds["read"] < found.seconds["first_picture"]
     bpy.context.object.location.x = 1.0
-    view.session.mark()
     view.settle()
     assert len(published) == 2
 
 
-def test_nothing_of_the_scene_is_kept_once_it_is_loaded(view, monkeypatch):
-    scenes = []
-
-    def watched(*arguments, **settings):
-        scene = sync_scene(*arguments, **settings)
-        scenes.extend(weakref.ref(kept) for kept in (scene, scene.shapes))
-        return scene
-
-    sync_scene = viewport_session.sync_scene
-    monkeypatch.setattr(viewport_session, "sync_scene", watched)
-    view.settle()
-    gc.collect()
-    assert scenes and not any(scene() for scene in scenes)
-
-
-@pytest.mark.parametrize("name, value", [("preview_samples", 3), ("max_depth", 2), ("shadows", "OPAQUE")])
-def test_a_setting_is_a_change(view, loads, name, value):
-    view.settle()
-    setattr(bpy.context.scene.conic, name, value)
-    view.session.mark()
-    view.settle()
-    assert len(loads) == 2
-
-
-def test_large_pixels(view):
-    view.engine.pixel_size = 4
-    pixels = view.settle()
-    blocks = pixels.reshape(HEIGHT // 4, 4, WIDTH // 4, 4, 4)
-    assert (blocks == blocks[:, :1, :, :1]).all()
-    assert sphere_at(pixels)[1] == pytest.approx(np.pi * (WIDTH / 6) ** 2, rel=0.15)
+# What goes wrong
 
 
 def test_an_error_is_shown_and_the_next_change_tries_again(view, monkeypatch):
-    from addon.engine import SceneError
-
     def refuse(*_arguments, **_settings):
         raise SceneError("this cannot be")
 
-    with monkeypatch.context() as patched:
-        patched.setattr(viewport_session, "sync_scene", refuse)
-        assert not view.redraw()
-        assert view.engine.text == "this cannot be"
-        assert not view.redraw(), "it does not try again and again"
-    view.session.mark()
-    assert sphere_at(view.settle())[1] > 0
+    for loaded in (False, True):
+        with monkeypatch.context() as patched:
+            patched.setattr(SceneReader, "read", refuse)
+            bpy.context.object.location.x = 1.0
+            view.settle()
+            assert view.engine.text == "this cannot be"
+            assert not view.redraw(), "it does not try again and again"
+            assert (view.pixels()[..., 3] > 0.0).all() == loaded, "what was there is shown"
+        bpy.context.object.location.x = 0.0
+        assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2, abs=0.25)
 
 
 @pytest.mark.parametrize(
     "error, words",
     [(ValueError("shapes do not fit"), "ValueError: shapes do not fit"), (MemoryError(), "not enough memory")],
 )
-@pytest.mark.parametrize("place", ["sync_scene", "camera_of_view"])
-def test_a_defect_is_shown_and_its_traceback_logged_once(view, monkeypatch, caplog, place, error, words):
+@pytest.mark.parametrize(
+    "owner, name",
+    [(SceneReader, "read"), (LoadedScene, "prepare"), (LoadedScene, "apply"), (viewport_session, "view_of")],
+)
+def test_a_defect_is_shown_and_its_traceback_logged_once(view, monkeypatch, caplog, owner, name, error, words):
     def fail(*_arguments, **_settings):
         raise type(error)(*error.args)
 
     with monkeypatch.context() as patched:
-        patched.setattr(viewport_session, place, fail)
-        for _ in range(3):
-            view.session.mark()
-            assert not view.redraw() and words in view.engine.text
+        patched.setattr(owner, name, fail)
+        for x in (1.0, 2.0, 3.0):
+            bpy.context.object.location.x = x
+            view.settle()
+            assert words in view.engine.text
     traces = [record for record in caplog.records if "Traceback" in record.getMessage()]
     assert len(traces) == (0 if isinstance(error, MemoryError) else 1)
-    view.session.mark()
+    bpy.context.object.location.x = 0.0
     assert sphere_at(view.settle())[1] > 0
 
 
@@ -264,11 +433,10 @@ def test_the_count_of_warnings_is_that_of_the_scene_as_it_is(view, caplog):
     for energy, count in ((float("nan"), 2), (10.0, 0), (float("nan"), 2)):
         caplog.clear()
         lamp.data.energy = energy
-        view.session.mark()
         view.settle()
         assert (f"{count} warnings" in view.engine.text) == (count > 0)
         assert ("warning" in view.engine.text) == (count > 0)
         assert len(caplog.records) == count
-        view.session.mark()  # read once more: nothing is said twice
+        bpy.context.object.update_tag()  # read once more: nothing is said twice
         view.settle()
         assert len(caplog.records) == count

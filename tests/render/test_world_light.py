@@ -170,7 +170,7 @@ def test_the_map_is_drawn_when_the_world_changes_and_no_program_is_made_anew(dev
         height = component(call("point_position"), 2) + 1.0
         scene.world = World(height * Parameter(strength), lights=True)
         session.load(scene, Settings(samples=2))
-        programs.add(session._program)
+        programs.add(session.loaded.drawn.program)
         assert len(drawn) == maps
     session.free()
     assert len(programs) == 1

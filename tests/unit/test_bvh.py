@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from addon.engine.bvh import MAX_DEPTH, build, refit, sah_cost, statistics, sweep_build
+from addon.engine.bvh import MAX_DEPTH, Form, build, refit, sah_cost, statistics, sweep_build
 from addon.engine.bvh.agglomerate import agglomerate
 from addon.engine.bvh.boxes import half_areas, morton_order, spans, take_spans
 from addon.engine.bvh.build import TOP
@@ -337,6 +337,19 @@ def test_refit(scene, seed):
     moved = refit(bvh, lo + step, hi + step)
     check(moved, lo + step, hi + step, bvh_labels(bvh))
     assert moved.child is bvh.child and moved.order is bvh.order and not np.array_equal(moved.boxes, bvh.boxes)
+
+
+@pytest.mark.parametrize("count", [1, 2, 9, TOP + 500])
+def test_a_form_around_spans_is_a_refit(count):
+    rng = np.random.default_rng(count)
+    lo, hi = (corner.astype(np.float32) for corner in uniform(count, rng))
+    bvh = build(lo, hi, rng.integers(0, 3, count))
+    step = rng.normal(size=lo.shape).astype(np.float32) * np.float32(0.1)
+    expected = refit(bvh, lo + step, hi + step)
+    order = bvh.order
+    found = Form(bvh).around(np.concatenate([-(lo + step)[order].T, (hi + step)[order].T]))
+    assert np.array_equal(found.boxes, expected.boxes) and np.array_equal(found.bounds, expected.bounds)
+    assert np.array_equal(found.child, bvh.child) and np.array_equal(found.order, bvh.order)
 
 
 def bvh_labels(bvh):

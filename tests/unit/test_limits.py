@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from addon.engine import bvh, layout, packing
+from addon.engine import bvh, image_packing, layout
 from addon.engine.errors import SceneError
 from addon.engine.material import surface_attribute
 from addon.engine.packing import pack
@@ -23,7 +23,7 @@ def nothing_is_built(monkeypatch):
 
     monkeypatch.setattr(bvh, "build", refuse)
     monkeypatch.setattr(layout, "data_texture", refuse)
-    monkeypatch.setattr(packing, "pack_images", refuse)
+    monkeypatch.setattr(image_packing, "pack_images", refuse)
 
 
 def scene_of(*parts, instances=(), **material):

@@ -3,8 +3,20 @@
 from .boxes import rounded_outward
 from .build import build
 from .cost import sah_cost, statistics
+from .form import Form
 from .refit import refit
 from .sweep import sweep_build
 from .tree import FAR, MAX_DEPTH, Bvh
 
-__all__ = ["FAR", "MAX_DEPTH", "Bvh", "build", "refit", "rounded_outward", "sah_cost", "statistics", "sweep_build"]
+__all__ = [
+    "FAR",
+    "MAX_DEPTH",
+    "Bvh",
+    "Form",
+    "build",
+    "refit",
+    "rounded_outward",
+    "sah_cost",
+    "statistics",
+    "sweep_build",
+]

@@ -26,7 +26,7 @@ def refit(bvh: Bvh, lo: np.ndarray, hi: np.ndarray) -> Bvh:
     boxes = np.full((len(bvh), 2, 2, 3), FAR, np.float32)
     if len(bvh) == 0:
         return replace(bvh, boxes=boxes)
-    leaf, start = _leaves(bvh)
+    leaf, start = leaves_in_order(bvh)
     around = np.empty((len(leaf), 2, 3), np.float32)
     for side, corner, reduce in ((0, lo, np.minimum), (1, hi, np.maximum)):
         corner = np.take(corner, bvh.order, axis=0)
@@ -34,7 +34,7 @@ def refit(bvh: Bvh, lo: np.ndarray, hi: np.ndarray) -> Bvh:
             around[:, side, axis] = reduce.reduceat(corner[:, axis], start)
     boxes.reshape(-1, 2, 3)[leaf] = around
     inner = bvh.is_inner
-    for level in reversed(_levels(bvh.child, inner)):
+    for level in reversed(nodes_by_level(bvh.child, inner)):
         parent = level[inner[level].any(axis=1)]
         for side in range(2):
             above = parent[inner[parent, side]]
@@ -44,7 +44,7 @@ def refit(bvh: Bvh, lo: np.ndarray, hi: np.ndarray) -> Bvh:
     return replace(bvh, boxes=boxes)
 
 
-def _leaves(bvh: Bvh) -> tuple[np.ndarray, np.ndarray]:
+def leaves_in_order(bvh: Bvh) -> tuple[np.ndarray, np.ndarray]:
     """The leaves as flat indices (node * 2 + child), and where they start in `order`; in that order."""
     leaf = np.flatnonzero(bvh.count)
     first = np.full(len(bvh.order), -1, np.int64)
@@ -53,7 +53,7 @@ def _leaves(bvh: Bvh) -> tuple[np.ndarray, np.ndarray]:
     return first[start], start
 
 
-def _levels(child: np.ndarray, inner: np.ndarray) -> list[np.ndarray]:
+def nodes_by_level(child: np.ndarray, inner: np.ndarray) -> list[np.ndarray]:
     """The nodes at each distance from the root."""
     level = np.zeros(1, np.int64)
     levels = []

@@ -19,6 +19,13 @@ class Device(Protocol):
     def texture(self, texels):
         """An RGBA32F data texture from texels (height, width, 4)."""
 
+    def grown(self, texture, texels):
+        """A data texture with room for at least so many texels, row by row, that begins as `texture` does (None: no
+        matter how)."""
+
+    def update(self, texture, first, texels):
+        """Write texels (n, 4) into a data texture from texel number `first` on, row by row."""
+
     def target(self, width, height, attachments):
         """A frame buffer of RGBA32F attachments, cleared to zero."""
 
@@ -42,6 +49,17 @@ class Device(Protocol):
 
     def release(self, thing):
         """Free a texture or target."""
+
+
+def row_pieces(first, count, width):
+    """Cut texels from number `first` on into rectangles of a texture `width` wide: yields the first texel's number and
+    which of the `count` it holds; at most a part of a row, whole rows, a part of a row."""
+    start = 0
+    while start < count:
+        into_row, left = (first + start) % width, count - start
+        length = min(width - into_row, left) if into_row or left < width else left // width * width
+        yield first + start, slice(start, start + length)
+        start += length
 
 
 def describe_compile_error(source, log, line):

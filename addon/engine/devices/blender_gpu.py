@@ -9,9 +9,13 @@ import tempfile
 import numpy as np
 
 from ..errors import DeviceError
+from ..glsl_functions import SHADER_FOLDER
+from ..layout import DATA_WIDTH, data_texture
 from .base import FULL_SCREEN_TRIANGLE, describe_compile_error
 
 _VERTEX = "void main() { gl_Position = vec4(position, 0.0, 1.0); }"
+
+_COPY = "copy_texels_frag.glsl"
 
 #: Programs by source. They live as long as Blender: one that is freed while bound makes later draws use it (see the
 #: manual of the gpu module: programs are told apart by their address).
@@ -55,6 +59,56 @@ class BlenderDevice:
             return self._gpu.types.GPUTexture((width, height), format="RGBA32F", data=self._buffer(texels))
         except (RuntimeError, ValueError, MemoryError) as error:
             raise DeviceError(f"no memory for a texture of {width} x {height}: {error}") from error
+
+    def grown(self, texture, texels):
+        width = min(texels, DATA_WIDTH)
+        height = -(-texels // width)
+        try:
+            new = self._gpu.types.GPUTexture((width, height), format="RGBA32F")
+        except (RuntimeError, ValueError, MemoryError) as error:
+            raise DeviceError(f"no memory for a texture of {width} x {height}: {error}") from error
+        if texture is not None:
+            self._copy(texture, new, 0, texture.width * texture.height)
+        return new
+
+    def update(self, texture, first, texels):
+        # There is no other way to change a part of a texture than to draw it.
+        padded = data_texture(len(texels))
+        padded.reshape(-1, 4)[: len(texels)] = texels
+        self._copy(self.texture(padded), texture, first, len(texels))
+
+    def _copy(self, source, texture, first, count):
+        """Copy the first `count` texels of `source` to number `first` and on of `texture`."""
+        shader, batch = self._copy_program()
+        width, last = texture.width, first + count - 1
+        state = self._gpu.state
+        with self._gpu.types.GPUFrameBuffer(color_slots=[texture]).bind():
+            state.scissor_test_set(True)
+            state.scissor_set(0, first // width, width, last // width - first // width + 1)
+            state.blend_set("NONE")
+            try:
+                shader.bind()
+                shader.uniform_sampler("texels_data", source)
+                for name, value in (("into_first", first), ("into_width", width), ("count", count)):
+                    shader.uniform_int(name, value)
+                batch.draw(shader)
+            finally:
+                state.scissor_test_set(False)
+        self._copied = source  # until the next copy: the GPU may not have read it yet
+
+    def _copy_program(self):
+        if _COPY not in _PROGRAMS:
+            info = self._gpu.types.GPUShaderCreateInfo()
+            info.vertex_in(0, "VEC2", "position")
+            info.sampler(0, "FLOAT_2D", "texels_data")
+            for name in ("into_first", "into_width", "count"):
+                info.push_constant("INT", name)
+            info.fragment_out(0, "VEC4", "out_texel")
+            info.vertex_source(_VERTEX)
+            info.fragment_source((SHADER_FOLDER / _COPY).read_text(encoding="utf-8"))
+            shader = self._gpu.shader.create_from_info(info)
+            _PROGRAMS[_COPY] = shader, self._batch_for_shader(shader, "TRIS", {"position": FULL_SCREEN_TRIANGLE})
+        return _PROGRAMS[_COPY]
 
     def target(self, width, height, attachments):
         try:

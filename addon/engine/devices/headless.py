@@ -9,7 +9,8 @@ import re
 import numpy as np
 
 from ..errors import DeviceError
-from .base import FULL_SCREEN_TRIANGLE, describe_compile_error
+from ..layout import DATA_WIDTH
+from .base import FULL_SCREEN_TRIANGLE, describe_compile_error, row_pieces
 
 _VERTEX = """#version 330
 in vec2 position;
@@ -102,6 +103,34 @@ class HeadlessDevice:
         height, width, _ = texels.shape
         try:
             texture = self._context.texture((width, height), 4, np.ascontiguousarray(texels, np.float32), dtype="f4")
+        except Exception as error:
+            raise DeviceError(f"no memory for a texture of {width} x {height}: {error}") from error
+        texture.filter = (self._context.NEAREST, self._context.NEAREST)
+        return texture
+
+    @_in_context
+    def grown(self, texture, texels):
+        width = min(texels, DATA_WIDTH)
+        height = -(-texels // width)
+        new = self._empty_texture(width, height)
+        if texture is not None:
+            frames = [self._context.framebuffer([t]) for t in (new, texture)]
+            self._context.copy_framebuffer(*frames)
+            for frame in frames:
+                frame.release()
+        return new
+
+    @_in_context
+    def update(self, texture, first, texels):
+        for start, rows in row_pieces(first, len(texels), texture.width):
+            x, y = start % texture.width, start // texture.width
+            width = min(texture.width, rows.stop - rows.start)
+            piece = np.ascontiguousarray(texels[rows], np.float32)
+            texture.write(piece, viewport=(x, y, width, len(piece) // width))
+
+    def _empty_texture(self, width, height):
+        try:
+            texture = self._context.texture((width, height), 4, dtype="f4")
         except Exception as error:
             raise DeviceError(f"no memory for a texture of {width} x {height}: {error}") from error
         texture.filter = (self._context.NEAREST, self._context.NEAREST)

@@ -163,8 +163,10 @@ def is_one_value(array):
 
 def _rows(array, order):
     """array[order] of (n, ...); what repeats one row still does."""
-    if isinstance(order, slice) or not is_one_value(array):
+    if isinstance(order, slice):
         return array[order]
+    if not is_one_value(array):
+        return array[order] if order.dtype == bool else np.take(array, order, axis=0)  # faster where rows are short
     count = np.count_nonzero(order) if order.dtype == bool else len(order)
     return np.broadcast_to(array[:1], (count, *array.shape[1:]))
 

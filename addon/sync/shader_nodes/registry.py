@@ -98,8 +98,8 @@ class Node:
         """A setting of the node that may change without another program: number or colour."""
         return Parameter(value)
 
-    def warn(self, text):
-        self.reader.warn(f"node {self.source.name!r}: {text}")
+    def warn(self, text, once=None):
+        self.reader.warn(f"node {self.source.name!r}: {text}", once)
 
     def instead(self, text):
         """Report that the node is not rendered, and what is used instead."""

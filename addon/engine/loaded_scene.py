@@ -1,0 +1,324 @@
+"""A scene on a device: its textures, its program, and what draws need to know of it. Any number of sessions use it.
+
+A scene takes the place of the one before in two parts: `prepare` is the processor's work, `apply` the GPU's. What is
+there can be drawn until `apply` is through.
+"""
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import depth_cue, layout, shader_source
+from .changes import Change
+from .errors import SceneError
+from .film import UNENDED_ALPHA
+from .new_textures import NewTextures
+from .packed_scene import PackedScene, table_changes
+from .packing import pack
+from .scene import Camera
+from .settings import Settings
+from .shader_source import ProgramSource
+from .timing import timed
+from .visibility import Visibility
+from .world_light import WorldLight, light_of_world, world_digest
+
+#: Surfaces that a tinted shadow ray may pass before it counts as blocked.
+_TINTED_SHADOW_SURFACES = 32
+
+#: Features of things of which a scene may have none.
+_SPARE_FEATURES = frozenset(f"HAS_{kind.upper()}" for kind in layout.KINDS if kind != "instance") | {"HAS_INSTANCES"}
+#: With these the shader must know whether there are instances: shapes in the world's space have no visibility.
+_ASK_FOR_INSTANCES = {"HAS_VISIBILITY", "HAS_SHADOW_CATCHER", "HAS_LIGHT_LINKING"}
+
+_GLOWS_IN_VAIN = (
+    "all light comes from surfaces that glow, which light others only in a picture of more than one sample; "
+    "take more samples or add a light"
+)
+
+
+@dataclass(eq=False)
+class Update:
+    """What `LoadedScene.prepare` made for `LoadedScene.apply`.
+
+    `change`: what differs from the scene before. `bytes`: to upload, by texture. `seconds`: by stage. `warnings`:
+    sentences for the user.
+    """
+
+    packed: PackedScene
+    settings: Settings
+    camera: Camera
+    world_digest: bytes
+    change: Change
+    bytes: dict
+    seconds: dict
+    warnings: list
+    job: object = field(default=None, repr=False)  # what `apply` still has to do, an iterator of steps
+    made: list = field(default_factory=list, repr=False)  # textures that are there already
+
+
+@dataclass(eq=False)
+class DrawnScene:
+    """All that a draw needs. `textures` and the texels that there is room for are by name; `source` and `features`
+    are those of the `program`."""
+
+    packed: PackedScene
+    settings: Settings
+    camera: Camera
+    world_light: WorldLight | None
+    textures: dict
+    rooms: dict
+    source: ProgramSource
+    features: frozenset
+    program: object
+
+    @property
+    def counts(self):
+        """Whether rays are counted."""
+        return _counts(self.settings)
+
+    @property
+    def outputs(self):
+        """What the program writes, an attachment of the film each."""
+        return self.source.outputs
+
+    def frame_values(self, camera):
+        """Members of the record `Frame` that depend on the scene, the settings and the camera."""
+        matrix = np.asarray(camera.matrix, np.float64)
+        packed, settings = self.packed, self.settings
+        left, right, bottom, top = camera.window
+        values = {
+            **packed.frame,
+            **(self.world_light.frame if self.world_light else {}),
+            "camera_origin": matrix[:3, 3] - packed.origin,
+            "camera_right": matrix[:3, 0],
+            "camera_up": matrix[:3, 1],
+            "camera_forward": -matrix[:3, 2],
+            "orthographic": camera.orthographic,
+            "clip_start": camera.clip[0],
+            "clip_end": camera.clip[1],
+            "window": (left, bottom, 1.0 / (right - left), 1.0 / (top - bottom)),
+            "world_origin": packed.origin,
+            "max_depth": settings.max_depth,
+            "shadows_pass": packed.shadows_pass[bool(settings.tinted_shadows)],
+            "weight_cutoff": settings.weight_cutoff,
+            "ao_distance": settings.ao_distance or 1e30,
+            "ao_factor": settings.ao_factor,
+            "ao_rays": settings.ao_rays,
+            "film_transparent": settings.film_transparent,
+        }
+        if settings.depth_cue:
+            values |= depth_cue.frame_values(settings.depth_cue, camera, packed.bounds, packed.origin)
+        return values
+
+    def draw(self, device, target, rectangle, values):
+        """Draw a rectangle of a target whose attachments are `outputs`; `values`: members of the record `Frame`."""
+        device.draw(self.program, target, rectangle, self.textures, frame_record(values))
+
+    def draw_outside(self, device):
+        """Draw one pixel of a target that is thrown away."""
+        scratch = device.target(1, 1, len(self.outputs))
+        self.draw(device, scratch, (0, 0, 1, 1), self.frame_values(self.camera))
+        device.read(scratch, 0, (0, 0, 1, 1))
+        device.release(scratch)
+
+
+class LoadedScene:
+    """What is loaded on a device. Every method raises ConicError with a sentence for the user.
+
+    `drawn`: the `DrawnScene`, None before anything is loaded. `version`: grows with each change; pictures of an older
+    one are to begin anew. `warnings`: sentences. `seconds`: of the last update, by stage.
+    `lasting`: whether other scenes follow that share much with this one; it costs memory of the processor.
+    """
+
+    def __init__(self, device, lasting=True):
+        self.device, self.lasting = device, lasting
+        self.drawn, self.version = None, 0
+        self.warnings, self.seconds = [], {}
+        self._world_digest = b""  # of the world whose light is there
+
+    # The processor's part
+
+    def prepare(self, scene, settings):
+        """The `Update` to a scene. It touches no GPU and may run in any thread, while sessions draw what is there; but
+        not while `apply` works on another update. It may be dropped."""
+        if settings.outlines and settings.outlines.around == "ATTRIBUTE" and not scene.outline_attribute:
+            raise SceneError("outlines go around the values of an attribute, but the scene does not say of which")
+        before = self.drawn
+        residency = before.packed.residency if before else None
+        packed = pack(scene, self.device.max_texture_size, residency, keep=self.lasting)
+        warnings = list(packed.warnings)
+        if settings.samples == 1 and packed.lit_by_surfaces_alone:
+            warnings.append(_GLOWS_IN_VAIN)
+        digest = world_digest(packed) if settings.world_light != "NONE" else b""
+        return Update(
+            packed=packed,
+            settings=settings,
+            camera=scene.camera,
+            world_digest=digest,
+            change=self._changes(packed, settings, digest),
+            bytes={},
+            seconds=dict(packed.statistics["seconds"]),
+            warnings=warnings,
+        )
+
+    def _changes(self, packed, settings, world_digest):
+        """The `Change` from what is there."""
+        before = self.drawn
+        if before is None:
+            return ~Change.NONE
+        change = packed.change | table_changes(before.packed, packed)
+        if world_digest != self._world_digest:
+            change |= Change.WORLD
+        light = before.world_light if world_digest == self._world_digest else world_digest or None
+        if self._source(packed, settings, light)[0] != before.source:
+            change |= Change.PROGRAM
+        return change | Change.FILM if change or settings != before.settings else change
+
+    def _source(self, packed, settings, world_light):
+        """(Source, features) of the program: the one that is there if it can draw things that the scene has no more,
+        for compiling takes seconds; else the one that has no more than it needs."""
+        features = _features(packed, settings, world_light)
+        if self.lasting and self.drawn:
+            spare = (self.drawn.features - features) & _SPARE_FEATURES
+            if spare and not features & _ASK_FOR_INSTANCES:
+                source = _source(packed, settings, features | spare)
+                if source == self.drawn.source:
+                    return source, features | spare
+        return _source(packed, settings, features), features
+
+    # The GPU's part
+
+    def apply(self, update, seconds=None):
+        """Bring an update to the GPU; True when all of it is there, else the next call goes on after about `seconds`.
+
+        Until then, and if it fails, the scene before is there as it was.
+        """
+        deadline = np.inf if seconds is None else time.perf_counter() + seconds
+        update.job = update.job or self._apply(update, in_pieces=seconds is not None)
+        try:
+            for _ in update.job:
+                if time.perf_counter() >= deadline:
+                    return False
+        except BaseException:
+            self.drop(update)
+            raise
+        return True
+
+    def drop(self, update):
+        """Give back what an update that is not to be applied any further has brought to the GPU."""
+        if update.job:
+            update.job.close()
+        self._release(update.made)
+        update.made = []
+
+    def _apply(self, update, in_pieces):
+        """Do what `update` takes, step by step."""
+        packed, before = update.packed, self.drawn
+        new = NewTextures(self.device, update, before, in_pieces)
+        while packed.uploads:  # one after the other: each is freed here as soon as it is there
+            name, upload = packed.uploads.popitem()
+            yield from new.add(name, upload)
+            del upload
+        yield
+        with timed(update.seconds, "upload"):
+            light = self._world_light(update, new)
+        yield
+        with timed(update.seconds, "compile"):
+            source, features = self._source(packed, update.settings, light)
+            program = self.device.program(source)
+            new.complete(source.textures)
+            drawn = DrawnScene(
+                packed, update.settings, update.camera, light, new.textures, new.rooms, source, features, program
+            )
+            if before is None or source != before.source:
+                update.change |= Change.PROGRAM | Change.FILM
+                yield
+                drawn.draw_outside(self.device)  # drivers leave much of their work to the first draw
+        self.drawn, update.made = drawn, []
+        self.warnings, self.seconds = update.warnings, update.seconds
+        self._world_digest = update.world_digest
+        self.version += bool(update.change)
+        kept = set(map(id, drawn.textures.values()))
+        self._release([texture for texture in before.textures.values() if id(texture) not in kept] if before else [])
+
+    def _world_light(self, update, new):
+        """The `WorldLight` of an update; its texture is uploaded where samples need it."""
+        if update.world_digest == self._world_digest:
+            light = self.drawn.world_light if self.drawn else None
+        else:
+            light = light_of_world(self.device, update.packed, new.textures) if update.world_digest else None
+        if not (light and update.settings.samples_world):
+            new.leave_out("world_light")
+        elif "world_light" not in new.textures or light is not self.drawn.world_light:
+            new.put("world_light", light.texels)
+        return light
+
+    @property
+    def texture_bytes(self):
+        """Bytes of the textures by name."""
+        return {name: 16 * room for name, room in self.drawn.rooms.items()} if self.drawn else {}
+
+    def free(self):
+        """Give back the textures; programs stay with the device."""
+        if self.drawn:
+            self._release(list(self.drawn.textures.values()))
+        self.drawn = None
+
+    def _release(self, textures):
+        for texture in textures:
+            self.device.release(texture)
+
+
+def frame_record(values):
+    """The uniform block (n,) float32 of members of the record `Frame` by name."""
+    record = layout.FRAME.zeros(1)
+    for name, value in values.items():
+        record[name] = value
+    return record.view(np.float32)
+
+
+def _counts(settings):
+    return settings.count_rays or settings.may_drop
+
+
+def _outputs(settings):
+    """What the program writes, an attachment of the film each."""
+    counters = ("out_rays", "out_dropped") if _counts(settings) else ()
+    guide = ("out_guide",) if settings.outlines else ()  # the last: of one sample only, it is not summed up
+    return ("out_color", *counters, *guide)
+
+
+def _features(packed, settings, world_light):
+    features = packed.features | _world_features(packed, settings, world_light) | settings.film_features
+    if not settings.tinted_shadows:
+        features -= {"TINTED_SHADOWS"}
+    return frozenset(features | ({"COUNT_RAYS"} if _counts(settings) else set()))
+
+
+def _source(packed, settings, features):
+    """The source of the program that has these features."""
+    constants = packed.constants | {
+        "PATH_STACK_SIZE": settings.stack_size,
+        "TINTED_SHADOW_SURFACES": _TINTED_SHADOW_SURFACES,
+        "UNENDED_ALPHA": UNENDED_ALPHA,
+    }
+    programs = (("programs_lib.glsl", packed.programs),)
+    return shader_source.program("trace_frag.glsl", features, constants, _outputs(settings), generated=programs)
+
+
+def _world_features(packed, settings, world_light):
+    if world_light is None:
+        return set()
+    if settings.samples_world:
+        return {"HAS_WORLD_LIGHT"} | ({"HAS_WORLD_GLOSS"} if _gloss_asks_world(packed) else set())
+    return {"HAS_HEMISPHERE_LIGHT"} | ({"HAS_AMBIENT_OCCLUSION"} if settings.use_ao else set())
+
+
+def _gloss_asks_world(packed):
+    """Whether what is rough asks bright parts of the world for light, as what is diffuse does: where the world is the
+    same for all rays, and not the same everywhere."""
+    rays = Visibility.DIFFUSE | Visibility.GLOSSY | Visibility.TRANSMISSION
+    programs, program = packed.world_programs
+    alike = packed.world.visibility & rays == rays and "HAS_LIGHT_PATH" not in programs.features()
+    return alike and program is not None and "HAS_ROUGHNESS" in packed.features

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scenes that 3D viewports show. Viewports that show the same objects share one: it is read once, and is on the GPU
+once. It is freed with the last of them."""
+
+import traceback
+import weakref
+
+import bpy
+
+from . import viewport_log
+from .background_job import Job
+from .engine import LoadedScene
+from .engine.changes import Change
+from .engine.timing import timed
+from .log_reporter import LogReporter
+from .render_session import blender_device, is_defect, sentence_of
+from .statistics import Statistics
+from .sync.scene_reader import SceneReader
+from .sync.scene_sync import SyncStatistics, sync_settings
+
+_LOOK_SECONDS = 0.01  # between two looks whether a scene has been prepared
+_SHOWN_TYPES = sorted(
+    name for name in bpy.types.SpaceView3D.bl_rna.properties.keys() if name.startswith("show_object_viewport_")
+)
+_scenes = weakref.WeakValueDictionary()  # by `ViewportScene.key`
+
+
+class ViewportScene:
+    """Blender's scene as viewports show it, read again when it has changed. Use it where the GPU context is active.
+
+    `loaded`: the engine's `LoadedScene`. A change takes three parts: reading, here and now; preparing, in another
+    thread; and bringing it to the GPU, a little at each redraw. Meanwhile viewports draw what was loaded before.
+    """
+
+    def __init__(self):
+        self.key = None  # of what it shows, see `_key`
+        self.report = LogReporter()
+        self.device = blender_device()
+        self.loaded = LoadedScene(self.device)
+        self.reader = SceneReader(self.report)
+        self.stale = True  # whether Blender's data may differ from what was read
+        self.error = ""  # why what was read last could not be loaded
+        self.statistics = None  # of what is loaded, until its first picture is there
+        self.sessions = weakref.WeakSet()  # the viewports that show it
+        self._reading = None  # statistics of what is being prepared
+        self._job = self._update = None  # what is being prepared; what is being brought to the GPU
+
+    @property
+    def ready(self):
+        """Whether there is something to draw."""
+        return self.loaded.drawn is not None
+
+    @property
+    def preparing(self):
+        """Whether another thread works, or has done so, on what the next `renew` takes."""
+        return self._job is not None
+
+    @property
+    def prepared(self):
+        """Whether the next `renew` has something to do at once."""
+        return self._update is not None or (self._job.wait(0.0) if self._job else self.stale)
+
+    @property
+    def settled(self):
+        """Whether what is loaded is what there is."""
+        return not (self.stale or self._job or self._update)
+
+    def mark(self, depsgraph):
+        """Blender says that something changed."""
+        self.stale = True
+        self.reader.mark(depsgraph)
+
+    def forget(self):
+        """Nothing that was read before can be trusted."""
+        self.stale = True
+        self.reader.forget()
+
+    def renew(self, depsgraph, view, space, seconds):
+        """Bring what is loaded nearer to Blender's data: read it, or go on with what was read for about `seconds`.
+        Where that fails, what was loaded stays, and `error` tells why until the scene is read again."""
+        try:
+            if self.stale and not self._job and not self._update:
+                self._read(depsgraph, view, space)
+                self._job.wait(0.5 * seconds)  # it may be a small one, and then shows at once
+            if self._job and not self._job.wait(0.0):
+                _watch_jobs()
+            elif self._job:
+                job, self._job = self._job, None
+                self._update = job.result()
+            if self._update:
+                self._upload(seconds)
+        except Exception as error:  # raised, it would be so at every redraw
+            self._drop()
+            self.error = self.explain(error)
+            viewport_log.records.append(viewport_log.Load(error=self.error))
+
+    def explain(self, error):
+        """What a user is told of an exception. The traceback of one that is Conic's fault goes to the log."""
+        if is_defect(error):
+            self.report("ERROR", "".join(traceback.format_exception(error)))
+        return sentence_of(error)
+
+    def _read(self, depsgraph, view, space):
+        """Read the scene, and begin to prepare it."""
+        self.stale, self.error = False, ""
+        self.report.begin()
+        self._reading, found = Statistics("Viewport"), SyncStatistics()
+        with timed(self._reading.seconds, "read"):
+            scene = self.reader.read(depsgraph, *view.size, camera=view.camera, space=space, statistics=found)
+        self._reading.add_reading(found)
+        self._job = Job(self.loaded.prepare, scene, sync_settings(depsgraph.scene_eval, True))
+
+    def _upload(self, seconds):
+        """Bring what was prepared to the GPU, or a part of it."""
+        if self.loaded.apply(self._update, 0.5 * seconds):
+            update, self._update = self._update, None
+            spent = {"read": self._reading.seconds["read"], **update.seconds}
+            viewport_log.records.append(viewport_log.Load(update.change, dict(update.bytes), spent))
+            if update.change != Change.NONE:
+                self.statistics = self._reading
+            self.tag_redraw()  # viewports that have drawn already too
+
+    def tag_redraw(self):
+        """Have the viewports redrawn that show it."""
+        for session in self.sessions:
+            session.tag_redraw()
+
+    def _drop(self):
+        """Forget what is under way."""
+        if self._update:
+            self.loaded.drop(self._update)
+        self._job = self._update = None
+
+    def __del__(self):
+        """Free what the GPU holds here and now: the last reference may be that of another thread."""
+        self._drop()
+        self.loaded.free()
+
+
+def scene_of(space, depsgraph, before=None):
+    """The `ViewportScene` that a 3D viewport (None outside of a window) shows of a depsgraph. `before`: the one that it
+    has shown up to now; where nobody else shows that, it becomes the new one: most of it may be the same."""
+    key = _key(space, depsgraph)
+    if before is not None and before.key == key:
+        return before
+    scene = _scenes.get(key)
+    if scene is None and before is not None and before.key[0] == key[0] and len(before.sessions) == 1:
+        scene = _scenes.pop(before.key)
+        scene.stale = True
+    scene = scene or ViewportScene()
+    _scenes[key], scene.key = scene, key
+    return scene
+
+
+def mark(depsgraph):
+    """Blender says that something changed in a depsgraph: call it in each `view_update`."""
+    owner = _owner(depsgraph)
+    for key, scene in list(_scenes.items()):
+        if key[0] == owner:
+            scene.mark(depsgraph)
+
+
+def _owner(depsgraph):
+    return depsgraph.scene.session_uid, depsgraph.view_layer.name
+
+
+def _key(space, depsgraph):
+    """What decides which objects a viewport shows. Its own settings are no data of the scene, and nothing promises that
+    Blender calls `view_update` for them."""
+    if space is None:
+        return _owner(depsgraph), ()
+    types = tuple(getattr(space, name) for name in _SHOWN_TYPES)
+    local = space.local_view is not None, space.use_local_collections
+    return _owner(depsgraph), (types, local, space.as_pointer() if any(local) else 0)
+
+
+# Redraws of viewports that wait for another thread
+
+
+def _watch_jobs():
+    """Have the viewports redrawn whose scenes have been prepared, once they are."""
+    if not bpy.app.background and not bpy.app.timers.is_registered(_look):
+        bpy.app.timers.register(_look, first_interval=_LOOK_SECONDS)
+
+
+def _look():
+    """Called by a timer; seconds until the next look, None for none."""
+    waiting = [scene for scene in _scenes.values() if scene.preparing]
+    for scene in waiting:
+        if scene.prepared:
+            scene.tag_redraw()
+    return _LOOK_SECONDS if waiting else None
+
+
+# Blender's handlers
+
+
+@bpy.app.handlers.persistent
+def _forget(*_arguments):
+    """Undo, redo and opening a file replace any data."""
+    for scene in list(_scenes.values()):
+        scene.forget()
+
+
+_HANDLERS = ("undo_post", "redo_post", "load_post")
+
+
+def register():
+    for name in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(_forget)
+
+
+def unregister():
+    for name in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(_forget)
+    if bpy.app.timers.is_registered(_look):
+        bpy.app.timers.unregister(_look)

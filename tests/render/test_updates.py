@@ -1,0 +1,459 @@
+"""A scene that takes the place of another on the device: the picture is that of a fresh session, and only what differs
+is uploaded."""
+
+import gc
+import weakref
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from addon.engine import (
+    Camera,
+    Change,
+    Cylinders,
+    Geometry,
+    Image,
+    Instances,
+    Light,
+    LoadedScene,
+    Material,
+    Planes,
+    Scene,
+    SceneError,
+    Session,
+    Settings,
+    Spheres,
+    Triangles,
+    World,
+    layout,
+)
+from addon.engine.expression import Parameter, call, component
+from addon.engine.film_options import DepthCue
+from addon.engine.material import surface_attribute, surface_image
+
+SIZE = (40, 30)
+CAMERA = Camera.look_at((0.0, -9.0, 3.0), (0.0, 0.0, 0.5), angle=50.0, aspect=SIZE[0] / SIZE[1])
+
+
+def picture(device, loaded=None, scene=None, settings=None, size=SIZE):
+    session = Session(device, loaded)
+    if loaded is None:
+        session.load(scene, settings)
+    session.start(*size)
+    while session.step(60.0):
+        pass
+    pixels = session.pixels()
+    session.free()
+    return pixels
+
+
+def update(loaded, scene, settings, seconds=None):
+    """Bring a scene to the device, in slices where `seconds` are given; the `Update`."""
+    made = loaded.prepare(scene, settings)
+    while not loaded.apply(made, seconds):
+        pass
+    return made
+
+
+class Stage:
+    """What a scene is made of, some of it another from edit to edit; all else stays the same objects."""
+
+    def __init__(self, seed):
+        self.rng = np.random.default_rng(seed)
+        self.settings = Settings(max_depth=4)
+        self.materials = [Material(diffuse=(0.7, 0.5, 0.3)), Material(diffuse=0.2, reflect=0.5)]
+        self.images = [self.new_image()]
+        self.lights = [Light.sun((0.3, -0.5, 1.0), 2.0)]
+        self.world = World((0.1, 0.15, 0.2))
+        self.planes = []
+        self.shapes = Geometry(self.new_spheres(30, 4.0), name="world")
+        self.instances = []
+
+    def scene(self):
+        return Scene(
+            camera=CAMERA,
+            world=self.world,
+            lights=list(self.lights),
+            materials=list(self.materials),
+            images=list(self.images),
+            shapes=self.shapes,
+            instances=list(self.instances),
+            planes=list(self.planes),
+        )
+
+    # What things are made of
+
+    def new_spheres(self, count, reach, slots=2):
+        rng = self.rng
+        center = rng.uniform(-reach, reach, (count, 3)) * (1.0, 1.0, 0.3)
+        radius = rng.uniform(0.3, 0.8, count) * 2.0 * reach / count ** (1 / 3) * 0.5
+        attributes = {name: rng.random((count, 4)) for name in ("a", "b") if rng.random() < 0.7}
+        return Spheres(center=center, radius=radius, material=rng.integers(0, slots, count), attributes=attributes)
+
+    def new_geometry(self):
+        count = int(self.rng.choice([1, 7, 40]))
+        parts = [self.new_spheres(count, 1.0)]
+        if self.rng.random() < 0.5:
+            corners = self.rng.uniform(-1.0, 1.0, (3, count, 3))
+            attributes = {"a": self.rng.random((count, 3, 4))}
+            parts.append(Triangles(p0=corners[0], p1=corners[1], p2=corners[2], attributes=attributes))
+        if self.rng.random() < 0.5:
+            ends = self.rng.uniform(-1.0, 1.0, (2, count, 3))
+            parts.append(Cylinders(base=ends[0], apex=ends[1], radius=0.1, material=1))
+        return Geometry(*parts)
+
+    def new_image(self):
+        size = self.rng.integers(1, 9, 2)
+        pixels = self.rng.random((*size, 4)).astype(np.float32)
+        kind = self.rng.integers(3)
+        if kind:
+            pixels = (255 * pixels).astype(np.uint8)
+            pixels[..., 3] = 255 if kind == 1 else pixels[..., 3]
+        return Image(pixels, interpolation=str(self.rng.choice(["CLOSEST", "LINEAR"])))
+
+    def new_instances(self, geometry):
+        count = int(self.rng.choice([1, 1, 3, 12]))
+        matrices = np.tile(np.eye(4), (count, 1, 1))
+        matrices[:, :3, :3] += self.rng.uniform(-0.3, 0.3, (count, 3, 3))
+        matrices[:, :3, 3] = self.rng.uniform(-4.0, 4.0, (count, 3))
+        if self.rng.random() < 0.2:
+            matrices = np.eye(4)[None]  # in the world's own space
+        attributes = {"a": self.rng.random((len(matrices), 4))} if self.rng.random() < 0.5 else {}
+        slots = tuple(self.rng.integers(0, len(self.materials), 2).tolist())
+        return Instances(geometry, matrices, slots, attributes=attributes)
+
+    def any_of(self, things):
+        return int(self.rng.integers(len(things)))
+
+    # Edits
+
+    def edit(self):
+        """Change something; its name."""
+        edits = [name for name in dir(self) if name.startswith("edit_")]
+        name = str(self.rng.choice(edits))
+        getattr(self, name)()
+        return name
+
+    def edit_shapes(self):
+        self.shapes = Geometry(self.new_spheres(int(self.rng.choice([1, 20, 200])), 4.0), name="world")
+
+    def edit_no_shapes(self):
+        self.shapes = Geometry(name="world")
+
+    def edit_many_shapes(self):
+        self.shapes = Geometry(self.new_spheres(5000, 4.0), name="world")
+
+    def edit_move_shapes(self):
+        old, self.shapes = self.shapes, Geometry(name="world")
+        for _, part in old.kinds():
+            moved = part.center + self.rng.normal(0.0, 0.02, part.center.shape)
+            columns = {"radius": part.radius, "material": part.material, "attributes": part.attributes}
+            self.shapes.add(Spheres(center=moved, **columns))
+        self.shapes.replaces = weakref.ref(old)
+
+    def edit_add_instances(self):
+        known = [placed.geometry for placed in self.instances]
+        again = known and self.rng.random() < 0.3
+        geometry = known[self.any_of(known)] if again else self.new_geometry()
+        self.instances.append(self.new_instances(geometry))
+
+    def edit_remove_instances(self):
+        if self.instances:
+            del self.instances[self.any_of(self.instances)]
+
+    def edit_move_instances(self):
+        if self.instances:
+            number = self.any_of(self.instances)
+            matrices = self.instances[number].matrices.copy()
+            matrices[:, :3, 3] += self.rng.normal(0.0, 0.5, 3)
+            self.instances[number] = replace(self.instances[number], matrices=matrices)
+
+    def edit_instanced_geometry(self):
+        if self.instances:
+            number = self.any_of(self.instances)
+            self.instances[number] = replace(self.instances[number], geometry=self.new_geometry())
+
+    def edit_constant(self):
+        number = self.any_of(self.materials)
+        self.materials[number] = replace(self.materials[number], reflect=float(self.rng.uniform(0.1, 0.5)))
+
+    def edit_surface(self):
+        number = self.any_of(self.materials)
+        surfaces = [
+            lambda: {"diffuse": surface_attribute(str(self.rng.choice(["a", "b"])))},
+            lambda: {"diffuse": surface_image(self.any_of(self.images))},
+            lambda: {"diffuse": 0.1, "glow": 2.0},
+            lambda: {"diffuse": 0.0, "transmit": 0.8, "ior": 1.2},
+            lambda: {"diffuse": Parameter(float(self.rng.random())) * component(call("point_position"), 2)},
+        ]
+        self.materials[number] = Material(**surfaces[self.any_of(surfaces)]())
+
+    def edit_add_material(self):
+        self.materials.append(Material(diffuse=tuple(self.rng.random(3))))
+
+    def edit_image(self):
+        self.images[self.any_of(self.images)] = self.new_image()
+
+    def edit_add_image(self):
+        self.images.append(self.new_image())
+
+    def edit_add_light(self):
+        for _ in range(int(self.rng.choice([1, 9]))):
+            self.lights.append(Light.point(self.rng.uniform((-4, -4, 0), (4, 4, 8)), 20.0))
+
+    def edit_remove_lights(self):
+        del self.lights[self.any_of(self.lights) + 1 :]
+
+    def edit_world(self):
+        worlds = [
+            lambda: World((0.3, 0.2, 0.1), lights=bool(self.rng.random() < 0.5)),
+            lambda: World((0.5, 0.5, 0.5), image=self.any_of(self.images), lights=bool(self.rng.random() < 0.5)),
+        ]
+        self.world = worlds[self.any_of(worlds)]()
+
+    def edit_plane(self):
+        if self.planes and self.rng.random() < 0.4:
+            self.planes = []
+        else:
+            attributes = {"a": self.rng.random(4)} if self.rng.random() < 0.5 else {}
+            height = [0.0, 0.0, self.rng.uniform(-3.0, -1.0)]
+            self.planes.append(Planes(point=[height], normal=[[0, 0.1, 1]], attributes=attributes))
+
+    def edit_settings(self):
+        options = [
+            {"samples": 2},
+            {"samples": 1},
+            {"max_depth": 3},
+            {"tinted_shadows": True},
+            {"depth_cue": DepthCue()},
+        ]
+        self.settings = replace(self.settings, **options[self.any_of(options)])
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_after_any_edits_the_picture_is_that_of_a_fresh_session(device, seed):
+    stage, loaded, log = Stage(seed), LoadedScene(device), []
+    for step in range(12):
+        log.append("+".join(stage.edit() for _ in range(stage.rng.integers(1, 4))) if step else "")
+        made = update(loaded, stage.scene(), stage.settings, seconds=0.0 if seed % 2 else None)
+        expected = picture(device, None, stage.scene(), stage.settings)
+        found = picture(device, loaded)
+        different = np.abs(found - expected).max(axis=-1) > 1e-5
+        assert not different.any(), (log, made.change, int(different.sum()))
+        gc.collect()
+    loaded.free()
+
+
+# What an edit changes, and what is uploaded
+
+
+def large(count=20_000, seed=0):
+    """Spheres that are a large geometry."""
+    rng = np.random.default_rng(seed)
+    return Geometry(Spheres(center=rng.uniform(-3, 3, (count, 3)), radius=rng.uniform(0.02, 0.05, count)), name="world")
+
+
+def ball(radius=1.0):
+    return Geometry(Spheres(center=[[0, 0, 0]], radius=radius))
+
+
+def placed(geometry, *places, slots=(0,)):
+    matrices = np.tile(np.eye(4), (len(places), 1, 1))
+    matrices[:, :3, 3] = places
+    return Instances(geometry, matrices, slots)
+
+
+def many_places(last):
+    """Places (1000, 3) of which the last one is another by this number."""
+    places = np.random.default_rng(0).uniform(-4, 4, (1000, 3))
+    places[-1] = last
+    return places
+
+
+def simple_scene(**parts):
+    parts = {"materials": [Material(diffuse=0.7), Material(diffuse=(0.2, 0.4, 0.6))], "shapes": large()} | parts
+    return Scene(camera=CAMERA, lights=[Light.sun((0.3, -0.5, 1.0), 2.0)], **parts)
+
+
+@pytest.fixture
+def loaded(device):
+    loaded = LoadedScene(device)
+    yield loaded
+    loaded.free()
+
+
+@pytest.fixture
+def before(loaded):
+    """A scene that is loaded: many spheres, instances, a plane, an image."""
+    scene = simple_scene(images=[Image(np.ones((16, 16, 4), np.float32))])
+    scene.instances = [placed(ball(), *many_places(1))]
+    scene.add_plane((0, 0, -4), (0, 0, 1), 1)
+    update(loaded, scene, Settings())
+    return scene
+
+
+def test_nothing_differs(loaded, before):
+    version = loaded.version
+    moved = replace(before, camera=Camera.look_at((3.0, -9.0, 3.0), (0.0, 0.0, 0.5)))
+    made = update(loaded, moved, Settings())
+    assert made.change == Change.NONE and made.bytes == {} and loaded.version == version
+
+
+def test_the_first_scene_changes_everything(loaded):
+    made = update(loaded, simple_scene(), Settings())
+    assert made.change == ~Change.NONE and {"spheres", "nodes", "tables"} <= set(made.bytes)
+
+
+EDITS = {
+    "a constant": (
+        lambda s: replace(s, materials=[s.materials[0], Material(diffuse=0.5)]),
+        Change.MATERIALS,
+        {"tables": 400},
+    ),
+    "a light": (
+        lambda s: replace(s, lights=[Light.sun((0.3, -0.5, 1.0), 3.0)]),
+        Change.LIGHTS,
+        {"tables": 400},
+    ),
+    "the world": (lambda s: replace(s, world=World((0.5, 0.1, 0.1))), Change.WORLD, {"tables": 400}),
+    "a plane": (
+        lambda s: replace(s, planes=[Planes(point=[[0, 0, -4.5]], normal=[[0, 0, 1]])]),
+        Change.PLANES,
+        {"tables": 400},
+    ),
+    "an image": (
+        lambda s: replace(s, images=[Image(np.zeros((16, 16, 4), np.float32))]),
+        Change.IMAGES,
+        {"images": 16 * 16 * 16, "tables": 400},
+    ),
+    "one of many instances": (
+        lambda s: replace(s, instances=[placed(s.instances[0].geometry, *many_places(2))]),
+        Change.INSTANCES,
+        {"instances": 1001 * 8 * 16, "nodes": 1000 * 4 * 16},
+    ),
+    "a new mesh": (
+        lambda s: replace(s, instances=[*s.instances, placed(ball(0.5), (1, 2, 3))]),
+        Change.INSTANCES | Change.GEOMETRY,
+        {"instances": 1002 * 8 * 16, "nodes": 1002 * 4 * 16, "spheres": 16, "sphere_surfaces": 16},
+    ),
+    "no instances": (
+        lambda s: replace(s, instances=[]),
+        Change.INSTANCES | Change.GEOMETRY,
+        {},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", EDITS)
+def test_an_edit_uploads_what_is_its_own(loaded, before, name):
+    edit, change, most = EDITS[name]
+    version = loaded.version
+    made = update(loaded, edit(before), Settings())
+    assert made.change == change | Change.FILM and loaded.version == version + 1
+    assert set(made.bytes) == set(most)
+    assert all(made.bytes[texture] <= count for texture, count in most.items()), made.bytes
+
+
+@pytest.mark.parametrize(
+    "option, change",
+    [({"max_depth": 5}, Change.PROGRAM), ({"weight_cutoff": 0.1}, Change.NONE), ({"samples": 4}, Change.NONE)],
+)
+def test_a_setting_uploads_nothing(loaded, before, option, change):
+    made = update(loaded, before, replace(Settings(), **option))
+    assert made.change == change | Change.FILM and made.bytes == {}
+
+
+def test_a_program_serves_as_long_as_it_can_and_no_longer(loaded, before):
+    source = loaded.drawn.source
+    nothing = replace(
+        before, instances=[], planes=[], shapes=Geometry(Triangles(p0=[[0, 0, 0]], p1=[1, 0, 0], p2=[0, 0, 1]))
+    )
+    for scene, serves in ((replace(before, instances=[]), True), (replace(before, planes=[]), True), (nothing, False)):
+        update(loaded, scene, Settings())
+        assert (loaded.drawn.source == source) == serves
+        assert np.array_equal(picture(loaded.device, loaded), picture(loaded.device, None, scene, Settings()))
+    assert "HAS_SPHERE" not in loaded.drawn.features
+
+
+def test_what_moves_a_little_is_refitted_and_what_moves_far_is_built(loaded):
+    scene = simple_scene()
+    update(loaded, scene, Settings())
+    part = dict(scene.shapes.kinds())[0]
+    cost = loaded.drawn.packed.statistics["bvh"]["sah_cost"]
+    for step, change in ((0.01, Change.REFIT), (0.01, Change.REFIT), (3.0, Change.GEOMETRY)):
+        old = scene.shapes
+        center = part.center + np.random.default_rng(1).normal(0.0, step, part.center.shape)
+        scene = replace(scene, shapes=Geometry(Spheres(center=center, radius=part.radius), name="world"))
+        scene.shapes.replaces = weakref.ref(old)
+        del old
+        gc.collect()
+        made = update(loaded, scene, Settings())
+        assert made.change & ~Change.PROGRAM == change | Change.FILM, "a deeper tree needs a larger stack"
+        assert np.array_equal(picture(loaded.device, loaded), picture(loaded.device, None, scene, Settings()))
+    assert loaded.drawn.packed.statistics["bvh"]["sah_cost"] < 3.0 * cost
+
+
+def test_of_another_number_nothing_is_refitted(loaded):
+    scene = simple_scene()
+    update(loaded, scene, Settings())
+    new = replace(scene, shapes=large(19_999))
+    new.shapes.replaces = weakref.ref(scene.shapes)
+    assert update(loaded, new, Settings()).change == Change.GEOMETRY | Change.FILM
+
+
+def test_what_was_given_back_is_used_again(loaded):
+    """Playing an animation takes twice the memory of a frame, and some to spare, however long it is."""
+    rooms = []
+    for seed in range(8):
+        update(loaded, simple_scene(shapes=large(seed=seed)), Settings())
+        rooms.append(sum(loaded.texture_bytes.values()))
+    assert max(rooms[2:]) == rooms[2] and rooms[2] < 3.0 * rooms[0]
+
+
+def test_a_setting_or_scene_that_is_refused_leaves_what_is_there(loaded, before):
+    expected = picture(loaded.device, loaded)
+    with pytest.raises(SceneError):
+        loaded.prepare(replace(before, instances=[placed(ball(), (0, 0, 0), slots=(7,))]), Settings())
+    assert np.array_equal(picture(loaded.device, loaded), expected)
+
+
+def test_an_update_that_is_dropped_half_way_leaves_what_is_there(loaded, before):
+    expected = picture(loaded.device, loaded)
+    for _ in range(3):
+        made = loaded.prepare(replace(before, shapes=large(30_000, 5)), Settings())
+        while "spheres" not in made.bytes:
+            assert not loaded.apply(made, 0.0)
+        assert np.array_equal(picture(loaded.device, loaded), expected)
+        loaded.drop(made)
+        assert np.array_equal(picture(loaded.device, loaded), expected)
+    update(loaded, before, Settings())
+    assert np.array_equal(picture(loaded.device, loaded), expected)
+
+
+def test_where_there_is_no_room_beside_what_lies_there_all_is_laid_out_anew(loaded, monkeypatch):
+    monkeypatch.setattr(layout, "most_texels", lambda size: 2 * layout.DATA_WIDTH)
+    scenes = []
+    for seed in range(2):
+        places = np.random.default_rng(seed).uniform(-4, 4, (900, 3))
+        scenes.append(simple_scene(shapes=large(10, seed), instances=[placed(ball(), *places)]))
+    update(loaded, scenes[0], Settings())
+    made = update(loaded, scenes[1], Settings())
+    assert Change.ALL_TEXTURES in made.change
+    assert np.array_equal(picture(loaded.device, loaded), picture(loaded.device, None, scenes[1], Settings()))
+    assert update(loaded, scenes[1], Settings()).change == Change.NONE
+
+
+def test_sessions_of_one_scene_begin_anew_when_it_changes(loaded, before):
+    sessions = [Session(loaded.device, loaded) for _ in range(2)]
+    for size, session in zip((SIZE, (20, 20)), sessions, strict=True):
+        session.start(*size)
+        session.step(60.0)
+    scene = replace(before, world=World((0.9, 0.1, 0.1)))
+    update(loaded, scene, Settings())
+    for size, session in zip((SIZE, (20, 20)), sessions, strict=True):
+        while session.step(60.0):
+            pass
+        assert np.array_equal(session.pixels(), picture(loaded.device, None, scene, Settings(), size))
+        session.free()
+    assert loaded.drawn is not None, "it is not theirs"
