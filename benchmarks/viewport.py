@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rendered viewport of Conic, Cycles and EEVEE side by side in the Blender application: `python -m benchmarks.viewport`.
+"""The rendered viewport of Conic, Cycles and EEVEE side by side: `python -m benchmarks.viewport`.
 
     python -m benchmarks.viewport [--scenes points_1e3 ...] [--engines CONIC CYCLES BLENDER_EEVEE] [--rounds 3]
                                   [--size 640 480] [--samples 4] [--backend opengl] [--json FILE] [--keep FOLDER]
@@ -58,7 +58,7 @@ def parser():
 def in_application(options, folder):
     """Have the application measure; the lines that its windows wrote."""
     found = subprocess.run(["tools/run_app_tests", "--find"], cwd=ROOT, capture_output=True, text=True, check=True)
-    command = shlex.split(found.stdout) + ["-b", "--factory-startup", "--gpu-backend", options.backend]
+    command = [*shlex.split(found.stdout), "-b", "--factory-startup", "--gpu-backend", options.backend]
     command += ["--python-exit-code", "1", "--python", "benchmarks/viewport_windows.py", "--", str(folder)]
     settings = {key: value for key, value in vars(options).items() if key not in ("json", "keep")}
     subprocess.run([*command, json.dumps(settings)], cwd=ROOT, check=True, stdin=subprocess.DEVNULL)
@@ -72,7 +72,11 @@ def column(lines, milestone, **wanted):
 
 def print_tables(lines, options):
     warm = [line for line in lines if line["round"] > 0]
-    print(f"\n{'scene':12}{'action':8}{'engine':15}" + "".join(f"{name:>21}" for name in MILESTONES) + f"{'cold seen':>11}")
+    print(
+        f"\n{'scene':12}{'action':8}{'engine':15}"
+        + "".join(f"{name:>21}" for name in MILESTONES)
+        + f"{'cold seen':>11}"
+    )
     for scene in options.scenes:
         for action in ACTIONS:
             medians = {}
@@ -103,11 +107,15 @@ def main():
         load = os.getloadavg()[0]
         lines = in_application(options, folder)
     width, height = options.size
-    print(f"{options.backend}, {width} x {height}, {options.samples} samples, {options.rounds} rounds;"
-          f" {os.cpu_count()} cores, load before: {load:.1f}")
+    print(
+        f"{options.backend}, {width} x {height}, {options.samples} samples, {options.rounds} rounds;"
+        f" {os.cpu_count()} cores, load before: {load:.1f}"
+    )
     print_tables(lines, options)
     if options.json:
-        options.json.write_text(json.dumps({"options": vars(options) | {"json": None, "keep": None}, "lines": lines}, indent=1))
+        options.json.write_text(
+            json.dumps({"options": vars(options) | {"json": None, "keep": None}, "lines": lines}, indent=1)
+        )
 
 
 if __name__ == "__main__":

@@ -17,13 +17,12 @@ from pathlib import Path
 import bpy
 from mathutils import Quaternion
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
-sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import addon
 from benchmarks.viewport_milestones import has_changed, milestones
 from tests.app.live_view import Screen, fill_window, run_in_window, view_parts
 
+sys.dont_write_bytecode = True
 FOLDER, SCENE, ROUNDS, *ENGINES = sys.argv[sys.argv.index("--") + 1 :]
 FOLDER, ROUNDS = Path(FOLDER), int(ROUNDS)
 TICK = 0.02  # seconds between looks whether the viewport has come to rest

@@ -15,13 +15,13 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
-sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import addon
 from addon.operators.nff_shapes import new_point_cloud
 from tests.app.screen import blender_window, virtual_screen
 
+sys.dont_write_bytecode = True
+ROOT = Path(__file__).resolve().parents[1]
 MOST = 3600.0  # seconds for all of a scene
 
 
@@ -45,7 +45,9 @@ def radius(count):
 
 
 def points(count):
-    cloud = new_point_cloud("Points", centers(count), np.full(count, radius(count), np.float32), paint("Warm", (0.8, 0.35, 0.1)))
+    cloud = new_point_cloud(
+        "Points", centers(count), np.full(count, radius(count), np.float32), paint("Warm", (0.8, 0.35, 0.1))
+    )
     bpy.context.scene.collection.objects.link(cloud)
 
 

@@ -8,7 +8,8 @@ import bpy
 import gpu
 import numpy as np
 
-UNSEEN = 30.0  # seconds without a picture: none will come
+LOST = 4.0  # seconds without a picture: opening a file with its window has taken the cursor's drawing away
+UNSEEN = 60.0  # seconds without a picture: none will come
 
 
 class Screen:
@@ -21,6 +22,9 @@ class Screen:
     def __init__(self):
         self.drawn = time.monotonic()  # when the window was last drawn
         self.pictures = None  # list of (seconds of the monotonic clock, pixels (h, w, 3) uint8) while it records
+        self._attach()
+
+    def _attach(self):
         bpy.types.WindowManager.draw_cursor_add(self._see, (), "VIEW_3D", "WINDOW")
 
     def _see(self, *_):
@@ -40,9 +44,14 @@ class Screen:
     def picture(self):
         """What is shown now, (h, w, 3) uint8, bottom row first; yields until it is seen."""
         self.pictures, before, start = [], self.pictures, time.monotonic()
+        lost = start + LOST
         while not self.pictures:
             if time.monotonic() - start > UNSEEN:
                 raise TimeoutError("the window is not drawn, or the mouse is not in the 3D viewport")
+            if time.monotonic() > lost:
+                lost = time.monotonic() + LOST
+                self._attach()
+                yield from point_at_view()
             view_parts()["area"].tag_redraw()
             yield
         (_, pixels), *_ = reversed(self.pictures)
