@@ -41,6 +41,7 @@ OPERATORS = {
     "select": Operator("({0} > 0.5 ? {1} : {2})", _select, narrow=1),
     "less": Operator("({0} < {1} ? 1.0 : 0.0)", lambda a, b: np.where(a < b, 1.0, 0.0), "float"),
     "sqrt": Operator("sqrt(max({0}, 0.0))", lambda a: np.sqrt(np.maximum(a, 0.0))),
+    "exp": Operator("exp({0})", np.exp),
     "absolute": Operator("abs({0})", np.abs),
     "combine": Operator("vec3({0}, {1}, {2})", lambda *x: np.concatenate(x), "vec3", narrow=3),
     "mean": Operator("dot({0}, vec3(1.0 / 3.0))", lambda a: a.mean(keepdims=True), "float"),

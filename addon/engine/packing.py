@@ -18,8 +18,14 @@ from .material_packing import MaterialTable
 from .plan import PLANE_ATTRIBUTES, check_texels, make_plan
 from .primitives import BY_KIND, Similarity, invertible
 from .scene import Visibility
+from .settings import SHADOWS
 from .timing import timed
 from .tree_packing import TreePacker, pieces
+
+_DARK = (
+    "the scene has no light: the sky is seen but lights nothing, so that other surfaces are black; add a light or let "
+    "the world light the scene"
+)
 
 
 @dataclass
@@ -36,10 +42,16 @@ class PackedScene:
     programs: str
     world: object
     world_programs: object
-    shadows_pass: dict  # whether shadow rays may pass through something, by whether they are tinted
+    shadows_pass: dict  # whether shadow rays may pass through something, by `Settings.shadows`
     bounds: np.ndarray
     statistics: dict
     warnings: list = field(default_factory=list)
+    needs_light: bool = False  # whether without the world's light surfaces are black
+
+    def warnings_with(self, settings):
+        """The warnings of a picture with some `Settings`."""
+        is_dark = self.needs_light and not (self.world.lights and settings.world_light != "NONE")
+        return [*self.warnings, *([_DARK] if is_dark else [])]
 
     @property
     def lit_by_surfaces_alone(self):
@@ -142,7 +154,6 @@ class _Packer:
         trees.finish(top)
         self.textures |= trees.textures
         planes = self._tables()
-        self._warn_of_darkness()
         self.frame |= {
             **self.lights.frame,
             "plane_count": len(planes),
@@ -163,10 +174,11 @@ class _Packer:
             programs=self.materials.programs.text(),
             world=self.scene.world,
             world_programs=self.materials.world_programs,
-            shadows_pass={t: self.lights.varies or self.materials.lets_shadows_pass(t) for t in (False, True)},
+            shadows_pass={way: self.lights.varies or self.materials.lets_shadows_pass(way) for way in SHADOWS},
             bounds=_bounds_of(top, trees),
             statistics=self._statistics(trees, top, depth),
             warnings=self.warnings,
+            needs_light=self._needs_light(),
         )
 
     def _outline_attribute(self):
@@ -250,14 +262,11 @@ class _Packer:
         self.warnings += warnings
         return records
 
-    def _warn_of_darkness(self):
+    def _needs_light(self):
+        """Whether there are surfaces that only light makes visible, and neither lamps nor what glows."""
         diffuse = any(not is_zero(material.diffuse) for material in self.materials.materials)
-        lit = len(self.lights.records["light"]) or self.scene.world.lights
-        if diffuse and not lit and (len(self.plan.built) or self.scene.planes):
-            self.warnings.append(
-                "the scene has no light: the sky is seen but lights nothing, so that other surfaces are black; "
-                "add a light"
-            )
+        shown = len(self.plan.built) or self.scene.planes
+        return bool(diffuse and shown and not len(self.lights.records["light"]))
 
     # The whole
 

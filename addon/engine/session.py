@@ -16,8 +16,10 @@ from .timing import timed
 from .visibility import Visibility
 from .world_light import light_of_world, world_digest
 
-#: Surfaces that a tinted shadow ray may pass before it counts as blocked.
-_TINTED_SHADOW_SURFACES = 32
+#: Surfaces that a shadow ray may pass before it counts as blocked.
+_SHADOW_SURFACES = 32
+#: The feature of the shader that each way of shadows needs.
+_SHADOW_FEATURES = {"TRANSPARENT": "TRANSPARENT_SHADOWS", "TINTED": "TINTED_SHADOWS"}
 
 _STAGES = ("build", "upload", "compile", "trace", "first_picture")
 
@@ -64,7 +66,7 @@ class Session:
         self._packed = pack(scene, self.device.max_texture_size)
         self._world_digest = world_digest(self._packed) if settings.world_light != "NONE" else b""
         self.settings, self.camera = settings, scene.camera
-        self.warnings = list(self._packed.warnings)
+        self.warnings = self._packed.warnings_with(settings)
         if settings.samples == 1 and self._packed.lit_by_surfaces_alone:
             self.warnings.append(_GLOWS_IN_VAIN)
         self._counts = settings.count_rays or settings.may_drop
@@ -115,13 +117,12 @@ class Session:
 
     def _source(self):
         features = self._packed.features | self._world_features() | self.settings.film_features
-        if not self.settings.tinted_shadows:
-            features -= {"TINTED_SHADOWS"}
+        features -= {*_SHADOW_FEATURES.values()} - {_SHADOW_FEATURES.get(self.settings.shadows)}
         if self._counts:
             features |= {"COUNT_RAYS"}
         constants = self._packed.constants | {
             "PATH_STACK_SIZE": self.settings.stack_size,
-            "TINTED_SHADOW_SURFACES": _TINTED_SHADOW_SURFACES,
+            "SHADOW_SURFACES": _SHADOW_SURFACES,
             "UNENDED_ALPHA": UNENDED_ALPHA,
         }
         programs = (("programs_lib.glsl", self._packed.programs),)
@@ -301,7 +302,7 @@ class Session:
                 "world_origin": self._packed.origin,
                 "sample": sample if self.settings.samples > 1 else -1,
                 "max_depth": self.settings.max_depth,
-                "shadows_pass": self._packed.shadows_pass[bool(self.settings.tinted_shadows)],
+                "shadows_pass": self._packed.shadows_pass[self.settings.shadows],
                 "weight_cutoff": self.settings.weight_cutoff,
                 "ao_distance": self.settings.ao_distance or 1e30,
                 "ao_factor": self.settings.ao_factor,

@@ -9,6 +9,7 @@ from ..engine.settings import Settings
 from ..engine.timing import timed
 from .attributes import key_of
 from .camera import camera_of_render
+from .image_cache import ImageCache
 from .images import Images
 from .lights import Lights
 from .object_sync import ObjectSync
@@ -29,13 +30,16 @@ class SyncStatistics:
     seconds: dict = field(default_factory=dict)
 
 
-def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report, space=None, statistics=None):
+def sync_scene(
+    depsgraph, width, height, *, engine=None, camera=None, report, space=None, statistics=None, image_cache=None
+):
     """The engine Scene of a depsgraph, for a frame of width x height pixels.
 
     `engine`: the RenderEngine that asks, None outside of a render. `camera`: an engine Camera to use instead of the
     scene's. `report(level, message)` is called once for each thing that is not rendered as it is. Raises SceneError
     where there is no camera. No reference to Blender's data is kept. `space`: the SpaceView3D that shows it, None for a
-    render. `statistics`: a `SyncStatistics` to fill.
+    render. `statistics`: a `SyncStatistics` to fill. `image_cache`: an `ImageCache` that is kept from one sync to the
+    next.
     """
     statistics = statistics or SyncStatistics()
     reports = Reports(report)
@@ -44,7 +48,8 @@ def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report, sp
     if depsgraph.scene_eval.render.use_motion_blur:
         reports.warn("motion blur is not rendered")
     scene = Scene(camera=camera, outline_attribute=outline_attribute(depsgraph.scene_eval))
-    images = Images(scene, depsgraph.scene_eval.frame_current)
+    image_cache = image_cache or ImageCache()
+    images = Images(scene, depsgraph.scene_eval.frame_current, image_cache)
     view_layer = depsgraph.view_layer_eval
     world = view_layer.world_override or depsgraph.scene_eval.world
     scene.world = with_light(read_world(world, images, reports), world, scene.images)
@@ -57,6 +62,7 @@ def sync_scene(depsgraph, width, height, *, engine=None, camera=None, report, sp
         statistics.objects |= objects.read()
     with timed(statistics.seconds, "place"):
         objects.place()
+    image_cache.finish()
     return scene
 
 
@@ -77,7 +83,7 @@ def sync_settings(scene, preview=False):
         samples=conic.preview_samples if preview else conic.samples,
         max_depth=conic.max_depth,
         weight_cutoff=conic.weight_cutoff,
-        tinted_shadows=conic.shadows == "TINTED",
+        shadows=conic.shadows,
         film_transparent=scene.render.film_transparent,
         flat_colors=conic.use_flat_colors,
         depth_cue=_depth_cue(conic) if conic.use_depth_cue else None,

@@ -35,7 +35,7 @@ DEFAULTS = {
     "preview_samples": 4,
     "max_depth": 8,
     "weight_cutoff": 1 / 512,
-    "shadows": "TINTED",
+    "shadows": "TRANSPARENT",
     "recognise": "ALWAYS",
     "curve_sampling": "PIXELS",
     "curve_tolerance": 0.25,
