@@ -72,7 +72,11 @@ def column(lines, milestone, **wanted):
 
 def print_tables(lines, options):
     warm = [line for line in lines if line["round"] > 0]
-    print(f"\n{'scene':12}{'action':8}{'engine':15}" + "".join(f"{name:>21}" for name in MILESTONES) + f"{'cold seen':>11}")
+    print(
+        f"\n{'scene':12}{'action':8}{'engine':15}"
+        + "".join(f"{name:>21}" for name in MILESTONES)
+        + f"{'cold seen':>11}"
+    )
     for scene in options.scenes:
         for action in ACTIONS:
             medians = {}
@@ -103,11 +107,15 @@ def main():
         load = os.getloadavg()[0]
         lines = in_application(options, folder)
     width, height = options.size
-    print(f"{options.backend}, {width} x {height}, {options.samples} samples, {options.rounds} rounds;"
-          f" {os.cpu_count()} cores, load before: {load:.1f}")
+    print(
+        f"{options.backend}, {width} x {height}, {options.samples} samples, {options.rounds} rounds;"
+        f" {os.cpu_count()} cores, load before: {load:.1f}"
+    )
     print_tables(lines, options)
     if options.json:
-        options.json.write_text(json.dumps({"options": vars(options) | {"json": None, "keep": None}, "lines": lines}, indent=1))
+        options.json.write_text(
+            json.dumps({"options": vars(options) | {"json": None, "keep": None}, "lines": lines}, indent=1)
+        )
 
 
 if __name__ == "__main__":

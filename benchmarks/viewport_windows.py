@@ -45,7 +45,9 @@ def radius(count):
 
 
 def points(count):
-    cloud = new_point_cloud("Points", centers(count), np.full(count, radius(count), np.float32), paint("Warm", (0.8, 0.35, 0.1)))
+    cloud = new_point_cloud(
+        "Points", centers(count), np.full(count, radius(count), np.float32), paint("Warm", (0.8, 0.35, 0.1))
+    )
     bpy.context.scene.collection.objects.link(cloud)
 
 
