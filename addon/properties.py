@@ -12,8 +12,14 @@ from .film_properties import FilmProperties
 from .property_update import tag_update
 
 SHADOWS = (
-    ("OPAQUE", "Opaque", "Whatever lies between a surface and a light blocks it, glass too"),
-    ("TINTED", "Tinted", "Light passes straight through transparent bodies and takes on their color"),
+    ("OPAQUE", "Opaque", "Whatever lies between a surface and a light blocks it", 0),
+    (
+        "TRANSPARENT",
+        "Transparent",
+        "Light passes through what is transparent, as much as its alpha says. Glass blocks it, as in Cycles",
+        2,
+    ),
+    ("TINTED", "Tinted", "Light passes straight through glass too and takes on its color", 1),
 )
 
 WORLD_LIGHTS = (
@@ -115,9 +121,9 @@ class ConicSceneSettings(FilmProperties, bpy.types.PropertyGroup):
     )
     shadows: EnumProperty(
         name="Shadows",
-        description="What transparent bodies do to the light that falls through them",
+        description="What the shadows of transparent surfaces and of glass look like",
         items=SHADOWS,
-        default="TINTED",
+        default="TRANSPARENT",
         update=tag_update,
     )
     world_light: EnumProperty(

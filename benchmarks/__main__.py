@@ -57,9 +57,7 @@ class PovRay:
 
     def __init__(self, scene, size, folder):
         self.source = Path(folder, "scene.pov")
-        self.source.write_text(
-            povray.scene_text(scene, Settings(max_depth=DEPTH, weight_cutoff=0.0, tinted_shadows=True))
-        )
+        self.source.write_text(povray.scene_text(scene, Settings(max_depth=DEPTH, weight_cutoff=0.0, shadows="TINTED")))
         self.options = [
             f"+W{size}",
             f"+H{size}",

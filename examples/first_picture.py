@@ -31,6 +31,7 @@ from examples.molecule import (
     read_pdb,
 )
 from examples.painted_images import globe, linear, studio
+from examples.shader_trees import new_material, new_world, shader
 from examples.stage import Stage, add_camera, new_image
 
 DRUG = "478"  # the residue's name in the file
@@ -80,13 +81,14 @@ def build_scene(atoms):
     for light in LIGHTS:
         stage.collection.objects.link(new_light(*light))
     scene = bpy.context.scene
-    scene.world = add_world()
+    scene.world = studio_world()
     scene.camera = add_camera(stage, (0.3, -13.5, 4.2), (0.0, 0.0, 1.45))
     scene.render.engine = "CONIC"
     scene.render.image_settings.file_format = "PNG"
     scene.render.image_settings.compression = 90
     scene.view_settings.view_transform = "Standard"
     scene.conic.max_depth = 10
+    scene.conic.shadows = "TINTED"  # light comes through glass
     return scene
 
 
@@ -126,53 +128,29 @@ def add_still_life(stage):
     half = STAND_HEIGHT / 2
     stand = glossy_paint("Stand", "1d2733", 0.05)
     stage.place("Stand", stage.drum, stand, (x, y, half), (STAND_RADIUS, STAND_RADIUS, half))
-    dark_mirror = new_material("Dark Mirror", "ShaderNodeBsdfGlossy", {"Color": (0.55, 0.58, 0.62), "Roughness": 0.0})
+    dark_mirror = mirror("Dark Mirror", (0.55, 0.58, 0.62))
     stage.place("Disc", stage.disc, dark_mirror, (x, y, STAND_HEIGHT + 0.001), 0.94 * STAND_RADIUS)
-    glass = new_material("Glass", "ShaderNodeBsdfGlass", {"Color": (1, 1, 1), "Roughness": 0.0, "IOR": 1.5})
+    glass = new_material("Glass", shader("BsdfGlass", Roughness=0.0, IOR=1.5))
     stage.place("Glass Sphere", stage.ball, glass, (1.3, -2.4, 0.82), 0.82)
-    mirror = new_material("Mirror", "ShaderNodeBsdfGlossy", {"Color": (0.92, 0.93, 0.95), "Roughness": 0.0})
-    stage.place("Mirror Sphere", stage.ball, mirror, (3.95, -0.2, 1.0), 1.0)
+    stage.place("Mirror Sphere", stage.ball, mirror("Mirror", (0.92, 0.93, 0.95)), (3.95, -0.2, 1.0), 1.0)
     stage.place("Cone", stage.cone, glossy_paint("Cone", "e8803a", 0.05), (3.0, -2.9, 0.525), (0.42, 0.42, 0.525))
-    image = new_image("Globe", globe(), is_float=False)
-    earth = new_material("Globe", "ShaderNodeBsdfPrincipled", {"Base Color": image, "Roughness": 0.05})
+    painted = shader("TexImage", image=new_image("Globe", globe(), is_float=False))
+    earth = new_material("Globe", shader("BsdfPrincipled", Base_Color=painted, Roughness=0.05))
     stage.place("Globe", stage.ball, earth, (-4.55, 0.3, 0.85), 0.85, Euler((0.0, radians(23.0), radians(165.0))))
 
 
 def glossy_paint(name, color, roughness):
     """Paint of a colour."""
-    inputs = {"Base Color": linear(color), "Roughness": roughness}
-    return new_material(name, "ShaderNodeBsdfPrincipled", inputs)
+    return new_material(name, shader("BsdfPrincipled", Base_Color=(*linear(color), 1.0), Roughness=roughness))
 
 
-def new_material(name, shader, inputs):
-    material = bpy.data.materials.new(name)
-    set_shader(material, shader, inputs, "ShaderNodeOutputMaterial", "ShaderNodeTexImage")
-    return material
+def mirror(name, color):
+    return new_material(name, shader("BsdfGlossy", Color=(*color, 1.0), Roughness=0.0))
 
 
-def set_shader(owner, shader, inputs, output, image_node):
-    """Make one shader the node tree of a material or world; `inputs`: a number, a colour (3,) or an image by socket."""
-    if bpy.app.version < (5, 0):
-        owner.use_nodes = True
-    tree = owner.node_tree
-    tree.nodes.clear()
-    node = tree.nodes.new(shader)
-    tree.links.new(node.outputs[0], tree.nodes.new(output).inputs["Surface"])
-    for name, value in inputs.items():
-        if isinstance(value, bpy.types.Image):
-            source = tree.nodes.new(image_node)
-            source.image = value
-            tree.links.new(source.outputs["Color"], node.inputs[name])
-        else:
-            node.inputs[name].default_value = value if np.isscalar(value) else (*value, 1.0)
-
-
-def add_world():
-    world = bpy.data.worlds.new("Studio")
+def studio_world():
     image = new_image("Studio", studio(linear("a9bccb"), linear("2f4a6b"), SOFTBOXES), is_float=True)
-    inputs = {"Color": image, "Strength": 1.0}
-    set_shader(world, "ShaderNodeBackground", inputs, "ShaderNodeOutputWorld", "ShaderNodeTexEnvironment")
-    return world
+    return new_world("Studio", shader("Background", Color=shader("TexEnvironment", image=image), Strength=1.0))
 
 
 if __name__ == "__main__":

@@ -72,6 +72,7 @@ def build_scene():
     scene.render.engine = "CONIC"
     scene.view_settings.view_transform = "Standard"
     scene.conic.max_depth = 14
+    scene.conic.shadows = "TINTED"  # light comes through glass
     return scene
 
 

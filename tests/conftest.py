@@ -1,4 +1,8 @@
-"""What all tests share: hypothesis' profile, and Blender with Conic registered from this checkout."""
+"""What all tests share: hypothesis' profile, Blender with Conic registered from this checkout, and how Python ends."""
+
+import atexit
+import os
+import sys
 
 import pytest
 from hypothesis import settings
@@ -24,3 +28,16 @@ def empty_blender(registered):
     import bpy
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure(config):
+    """End Python at once where Blender before 5.0 is a module. It ends when nothing refers to bpy any more; pytest
+    keeps functions and failed tests' tracebacks that do, so that it would end after Python, and crash."""
+    session = config.pluginmanager.get_plugin("session")
+    bpy = sys.modules.get("bpy")
+    if session and bpy and not bpy.app.binary_path and bpy.app.version < (5, 0, 0):
+        atexit._run_exitfuncs()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(session.exitstatus)

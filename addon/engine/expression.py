@@ -252,12 +252,12 @@ def sqrt(x):
     return _operate("sqrt", expression(x))
 
 
-def absolute(x):
-    return _operate("absolute", expression(x))
-
-
 def exp(x):
     return _operate("exp", expression(x))
+
+
+def absolute(x):
+    return _operate("absolute", expression(x))
 
 
 def mean(x):

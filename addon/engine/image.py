@@ -11,13 +11,13 @@ INTERPOLATIONS = ("CLOSEST", "LINEAR", "CUBIC")
 EXTENSIONS = ("REPEAT", "EXTEND", "CLIP", "MIRROR")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Image:
     """Pixels (height, width, 3 or 4), bottom row first, colours multiplied by alpha.
 
     Either float32, scene-linear; or uint8, which take a quarter of the memory, or half where there is alpha, and with
     `srgb` are sRGB: these are mixed before they are decoded, as in Cycles. `divided`: what is looked up is the colour
-    without its alpha.
+    without its alpha. Two are equal only if they are one object: lists of images that are equal have the same pixels.
     """
 
     pixels: np.ndarray

@@ -243,6 +243,8 @@ MATERIAL = _record(
     ("unused_2", "float", ""),
     ("normal", "vec3", "shading normal in place of the surface's own, on the side of the ray; 0: none"),
     ("unused_3", "float", ""),
+    ("straight", "vec3", "part of `transmit` that lets shadow rays through where bodies that bend light block them"),
+    ("unused_4", "float", ""),
 )
 # Texels of the parameters of materials' programs, as `node_programs` packs them.
 CONSTANT = _record("constant", "tables", ("value", "vec4", "up to four numbers"))

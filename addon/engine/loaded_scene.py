@@ -23,18 +23,15 @@ from .timing import timed
 from .visibility import Visibility
 from .world_light import WorldLight, light_of_world, world_digest
 
-#: Surfaces that a tinted shadow ray may pass before it counts as blocked.
-_TINTED_SHADOW_SURFACES = 32
+#: Surfaces that a shadow ray may pass before it counts as blocked.
+_SHADOW_SURFACES = 32
+#: The feature of the shader that each way of shadows needs.
+_SHADOW_FEATURES = {"TRANSPARENT": "TRANSPARENT_SHADOWS", "TINTED": "TINTED_SHADOWS"}
 
 #: Features of things of which a scene may have none.
 _SPARE_FEATURES = frozenset(f"HAS_{kind.upper()}" for kind in layout.KINDS if kind != "instance") | {"HAS_INSTANCES"}
 #: With these the shader must know whether there are instances: shapes in the world's space have no visibility.
 _ASK_FOR_INSTANCES = {"HAS_VISIBILITY", "HAS_SHADOW_CATCHER", "HAS_LIGHT_LINKING"}
-
-_GLOWS_IN_VAIN = (
-    "all light comes from surfaces that glow, which light others only in a picture of more than one sample; "
-    "take more samples or add a light"
-)
 
 
 @dataclass(eq=False)
@@ -100,7 +97,7 @@ class DrawnScene:
             "window": (left, bottom, 1.0 / (right - left), 1.0 / (top - bottom)),
             "world_origin": packed.origin,
             "max_depth": settings.max_depth,
-            "shadows_pass": packed.shadows_pass[bool(settings.tinted_shadows)],
+            "shadows_pass": packed.shadows_pass[settings.shadows],
             "weight_cutoff": settings.weight_cutoff,
             "ao_distance": settings.ao_distance or 1e30,
             "ao_factor": settings.ao_factor,
@@ -147,9 +144,6 @@ class LoadedScene:
         before = self.drawn
         residency = before.packed.residency if before else None
         packed = pack(scene, self.device.max_texture_size, residency, keep=self.lasting)
-        warnings = list(packed.warnings)
-        if settings.samples == 1 and packed.lit_by_surfaces_alone:
-            warnings.append(_GLOWS_IN_VAIN)
         digest = world_digest(packed) if settings.world_light != "NONE" else b""
         return Update(
             packed=packed,
@@ -159,7 +153,7 @@ class LoadedScene:
             change=self._changes(packed, settings, digest),
             bytes={},
             seconds=dict(packed.statistics["seconds"]),
-            warnings=warnings,
+            warnings=packed.warnings_with(settings),
         )
 
     def _changes(self, packed, settings, world_digest):
@@ -291,8 +285,7 @@ def _outputs(settings):
 
 def _features(packed, settings, world_light):
     features = packed.features | _world_features(packed, settings, world_light) | settings.film_features
-    if not settings.tinted_shadows:
-        features -= {"TINTED_SHADOWS"}
+    features -= {*_SHADOW_FEATURES.values()} - {_SHADOW_FEATURES.get(settings.shadows)}
     return frozenset(features | ({"COUNT_RAYS"} if _counts(settings) else set()))
 
 
@@ -300,7 +293,7 @@ def _source(packed, settings, features):
     """The source of the program that has these features."""
     constants = packed.constants | {
         "PATH_STACK_SIZE": settings.stack_size,
-        "TINTED_SHADOW_SURFACES": _TINTED_SHADOW_SURFACES,
+        "SHADOW_SURFACES": _SHADOW_SURFACES,
         "UNENDED_ALPHA": UNENDED_ALPHA,
     }
     programs = (("programs_lib.glsl", packed.programs),)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .errors import SceneError
-from .expression import AttributeNumber, Expression, Parameter, call, expression, largest
+from .expression import AttributeNumber, Expression, Parameter, absolute, call, expression, largest, less, select
 from .visibility import Visibility
 
 _COLORS = (
@@ -43,7 +43,7 @@ class Material:
     dielectric's of the index `coat_ior`, which lies on top, lets the rest through and tints it. `translucent` is a
     diffuse share of the light from the other side. `diffuse_roughness` is that of Oren and Nayar, as Cycles has it.
     `normal` is the shading normal, of any length, or zero for the surface's own. `holdout` is a share that is cut out
-    of the picture.
+    of the picture. `straight` is the part of `transmit` that shadow rays keep where what bends light blocks them.
     """
 
     diffuse: tuple = (0.8, 0.8, 0.8)
@@ -72,6 +72,7 @@ class Material:
     diffuse_roughness: float = 0.0
     normal: tuple = (0.0, 0.0, 0.0)
     holdout: float = 0.0
+    straight: tuple | None = None  # None: all of `transmit` where `ior` is 1
     bounds_body: bool = True  # False: a single sheet, which bends light but is no border of a medium
     cull_back: bool = False  # rays that meet the back pass through, shadow rays only with the next
     cull_back_shadow: bool = False
@@ -89,12 +90,20 @@ class Material:
             object.__setattr__(self, "diffuse_covered", self._share_of_fresnel())
         if self.transmit_covered is None:
             object.__setattr__(self, "transmit_covered", self.fresnel)
+        straight = self._unbent() if self.straight is None else _checked_color("material: straight", self.straight)
+        object.__setattr__(self, "straight", straight)
 
     def _share_of_fresnel(self):
         """What the mirror's share is of Fresnel's reflectance."""
         if isinstance(self.fresnel, Expression) or isinstance(self.reflect, Expression):
             return expression(self.fresnel) * largest(self.reflect)
         return self.fresnel * max(self.reflect)
+
+    def _unbent(self):
+        """What goes through where the index is 1."""
+        if isinstance(self.ior, Expression):
+            return select(less(absolute(self.ior - 1.0), 1e-6), self.transmit, 0.0)
+        return self.transmit if self.ior == 1.0 else (0.0, 0.0, 0.0)
 
     def _check(self, name, rule, holds):
         value = getattr(self, name)

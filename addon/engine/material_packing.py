@@ -27,6 +27,7 @@ _MEMBERS = {
     "coat": ("vec3", 0.0, 1.0, 0.5),
     "coat_tint": ("vec3", 0.0, 1.0, 1.0),
     "normal": ("vec3", -_LARGEST, _LARGEST, 0.0),
+    "straight": ("vec3", 0.0, 1.0, 0.5),
     "roughness": ("float", 0.0, 1.0, 0.5),
     "transmit_roughness": ("float", 0.0, 1.0, 0.5),
     "coat_roughness": ("float", 0.0, 1.0, 0.5),
@@ -42,6 +43,8 @@ _MEMBERS = {
     "multiscatter": ("float", 0.0, 1.0, 0.0),
 }
 _FLAGS = ("bounds_body", "cull_back", "cull_back_shadow")
+#: Members whose share of the light shadow rays take along, by `Settings.shadows`.
+_PASSED = {"TRANSPARENT": "straight", "TINTED": "transmit"}
 
 
 class MaterialTable:
@@ -60,7 +63,8 @@ class MaterialTable:
         self.firsts = [self._first(p, number) for p, number in zip(plan.placed, plan.placed_numbers, strict=True)]
         self._world = Material(diffuse=0.0, glow=scene.world.radiance)
         self.programs = NodePrograms()
-        self._program_of = {id(m): self._program(m, self.programs) for m in (*self.materials, self._world)}
+        self._distinct = list({id(m): m for m in self.materials}.values())
+        self._program_of = {id(m): self._program(m, self.programs) for m in (*self._distinct, self._world)}
         self._check_images(scene)
 
     def _first(self, placed, number):
@@ -92,7 +96,7 @@ class MaterialTable:
 
     def records(self, attributes):
         """(Records of `layout.MATERIAL`, of `layout.CONSTANT`); `attributes` is the plan's `AttributePlan`."""
-        materials = [*self.materials, self._world]
+        materials = [*self._distinct, self._world]
         records = layout.MATERIAL.zeros(len(materials))
         for name, (kind, low, high, stand_in) in _MEMBERS.items():
             values = [_constant(getattr(material, name), kind, stand_in) for material in materials]
@@ -110,6 +114,8 @@ class MaterialTable:
                 texels.append(constant_texels(program, end, attributes.number))
                 end += len(texels[-1])
             record["program"], record["constants"] = program.number, first[id(program)]
+        row = {id(material): number for number, material in enumerate(materials)}
+        records = records[[row[id(material)] for material in (*self.materials, self._world)]]
         return records, np.concatenate(texels).view(layout.CONSTANT.dtype)[:, 0]
 
     def features(self):
@@ -127,15 +133,17 @@ class MaterialTable:
             "HAS_CULLING": lambda m: m.cull_back,
             "CULLED_SHADOWS": lambda m: m.cull_back_shadow,
             "TINTED_SHADOWS": lambda m: not is_zero(m.transmit),
+            "TRANSPARENT_SHADOWS": lambda m: not is_zero(m.straight),
         }
-        found = {feature for feature, uses in used.items() if any(map(uses, self.materials))}
+        found = {feature for feature, uses in used.items() if any(map(uses, self._distinct))}
         if len(self.programs):
             found |= {"HAS_PROGRAMS", *self.programs.features()}
         return found
 
-    def lets_shadows_pass(self, tinted):
-        """Whether shadow rays may pass through a surface, `tinted` if they may through what transmits."""
-        return any(m.cull_back_shadow or (tinted and _may_transmit(m)) for m in self.materials)
+    def lets_shadows_pass(self, way):
+        """Whether shadow rays may pass through a surface; `way` as `Settings.shadows`."""
+        passed = _PASSED.get(way)
+        return any(m.cull_back_shadow or (passed and _may_be(getattr(m, passed))) for m in self._distinct)
 
     def _program(self, material, programs):
         """The `Program` of a material among `programs`; None for one that is the same everywhere."""
@@ -181,8 +189,8 @@ def _has_coat(material):
     return not is_zero(material.coat)
 
 
-def _may_transmit(material):
-    value = material.transmit
+def _may_be(value):
+    """Whether a colour may be anything but black, as far as its constants tell."""
     return not vanishes(value) if isinstance(value, Expression) else max(value) > 0.0
 
 

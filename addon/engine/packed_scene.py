@@ -19,6 +19,15 @@ _SECTIONS = {
     "attribute": Change.ATTRIBUTES,
 }
 
+_DARK = (
+    "the scene has no light: the sky is seen but lights nothing, so that other surfaces are black; add a light or let "
+    "the world light the scene"
+)
+_GLOWS_IN_VAIN = (
+    "all light comes from surfaces that glow, which light others only in a picture of more than one sample; "
+    "take more samples or add a light"
+)
+
 
 @dataclass
 class PackedScene:
@@ -36,7 +45,7 @@ class PackedScene:
     programs: str
     world: object
     world_programs: object
-    shadows_pass: dict  # whether shadow rays may pass through something, by whether they are tinted
+    shadows_pass: dict  # whether shadow rays may pass through something, by `Settings.shadows`
     bounds: np.ndarray
     statistics: dict
     warnings: list
@@ -44,6 +53,7 @@ class PackedScene:
     change: Change
     tables: dict
     table_texels: np.ndarray | None
+    needs_light: bool  # whether without the world's light surfaces are black
 
     @property
     def textures(self):
@@ -53,6 +63,12 @@ class PackedScene:
     def table(self, name):
         """The texels (n, 4) of the records of a name."""
         return self.table_texels[self.tables[name]]
+
+    def warnings_with(self, settings):
+        """The warnings of a picture with some `Settings`."""
+        is_dark = self.needs_light and not (self.world.lights and settings.world_light != "NONE")
+        in_vain = settings.samples == 1 and self.lit_by_surfaces_alone
+        return [*self.warnings, *([_DARK] if is_dark else []), *([_GLOWS_IN_VAIN] if in_vain else [])]
 
     @property
     def lit_by_surfaces_alone(self):

@@ -22,6 +22,7 @@ from .plan import PLANE_ATTRIBUTES, check_texels, make_plan
 from .primitives import BY_KIND, Similarity, invertible
 from .residency import Residency, ResidentInstances, ResidentPlanes, Upload, is_same, references
 from .scene import Visibility
+from .settings import SHADOWS
 from .timing import timed
 from .tree_packing import AttributeWriter, TreePacker, pieces, rows_by_kind
 
@@ -124,7 +125,6 @@ class _Packer:
             self.change |= Change.ATTRIBUTES
         planes = self._tables(trees, attributes)
         self._drop_what_went(written, stand)
-        self._warn_of_darkness()
         root = self._root(trees)
         low, high = layout.split_index(root)
         self.frame |= {
@@ -149,10 +149,11 @@ class _Packer:
             programs=self.materials.programs.text(),
             world=self.scene.world,
             world_programs=self.materials.world_programs,
-            shadows_pass={t: self.lights.varies or self.materials.lets_shadows_pass(t) for t in (False, True)},
+            shadows_pass={way: self.lights.varies or self.materials.lets_shadows_pass(way) for way in SHADOWS},
             bounds=_bounds_of(top, trees),
             statistics=self._statistics(trees, top, depth),
             warnings=self.warnings,
+            needs_light=self._needs_light(),
             residency=residency,
             change=self.change,
             tables=self.tables,
@@ -379,14 +380,11 @@ class _Packer:
         self.warnings += self.residency.reduced
         return np.array([image.record for image in self.residency.images], layout.IMAGE.dtype)
 
-    def _warn_of_darkness(self):
+    def _needs_light(self):
+        """Whether there are surfaces that only light makes visible, and neither lamps nor what glows."""
         diffuse = any(not is_zero(material.diffuse) for material in self.materials.materials)
-        lit = len(self.lights.records["light"]) or self.scene.world.lights
-        if diffuse and not lit and (len(self.plan.built) or self.scene.planes):
-            self.warnings.append(
-                "the scene has no light: the sky is seen but lights nothing, so that other surfaces are black; "
-                "add a light"
-            )
+        shown = len(self.plan.built) or self.scene.planes
+        return bool(diffuse and shown and not len(self.lights.records["light"]))
 
     # The whole
 

@@ -8,6 +8,7 @@ from .errors import SceneError
 from .film_options import DepthCue, Outlines
 
 WORLD_LIGHTS = ("SAMPLED", "HEMISPHERE", "NONE")
+SHADOWS = ("OPAQUE", "TRANSPARENT", "TINTED")
 #: Rays of ambient occlusion in a picture of one sample.
 AO_RAYS = 16
 
@@ -18,13 +19,14 @@ class Settings:
 
     `samples`: rays through each pixel; the first goes through its centre. One takes the middle of each light, for a
     picture without noise; of more, each takes another point of it. `max_depth`: the eye ray is 1.
-    `weight_cutoff`: rays of a smaller share of the pixel are not followed, 0 follows all. `tinted_shadows`: shadow
-    rays pass through transmitting bodies and take on their colour; otherwise all bodies are opaque to them, as in the
-    paper. `film_transparent`: alpha 0 where the eye sees the sky. `count_rays`: compile the variant of the shader
-    that counts. `corner_rays`: rays through the corners of the pixels, four averaged, one row and column more than
-    pixels. `stack_limit`: the most rays that wait at a time; with more needed, what is dropped is counted and
-    reported. `flat_colors`: surfaces have their diffuse colour wherever light comes from. `depth_cue`, `outlines`: None
-    for none.
+    `weight_cutoff`: rays of a smaller share of the pixel are not followed, 0 follows all. `film_transparent`: alpha 0
+    where the eye sees the sky. `count_rays`: compile the variant of the shader that counts. `corner_rays`: rays
+    through the corners of the pixels, four averaged, one row and column more than pixels. `stack_limit`: the most
+    rays that wait at a time; with more needed, what is dropped is counted and reported. `flat_colors`: surfaces have
+    their diffuse colour wherever light comes from. `depth_cue`, `outlines`: None for none.
+
+    `shadows`: OPAQUE, whatever is in the way blocks a light, as in the paper; TRANSPARENT, what transmits without
+    bending lets its share of the light through, as in Cycles; TINTED, all that transmits does, straight, glass too.
 
     `world_light`, of worlds that light: SAMPLED by shadow rays, at one sample as HEMISPHERE, which is smooth and has no
     shadows, or NONE. `use_ao`: what is within `ao_distance` (0: however far) takes the share `ao_factor` of the
@@ -34,7 +36,7 @@ class Settings:
     samples: int = 1
     max_depth: int = 8
     weight_cutoff: float = 1.0 / 512.0
-    tinted_shadows: bool = False
+    shadows: str = "OPAQUE"
     film_transparent: bool = False
     count_rays: bool = False
     corner_rays: bool = False
@@ -57,8 +59,9 @@ class Settings:
                 raise SceneError(f"{name} is {getattr(self, name)}; it must lie between {lowest} and {highest}")
         if not 0.0 <= self.weight_cutoff < 1.0:
             raise SceneError(f"weight_cutoff is {self.weight_cutoff}; it must be at least 0 and less than 1")
-        if self.world_light not in WORLD_LIGHTS:
-            raise SceneError(f"world_light is {self.world_light!r}; it must be one of {', '.join(WORLD_LIGHTS)}")
+        for name, known in (("world_light", WORLD_LIGHTS), ("shadows", SHADOWS)):
+            if getattr(self, name) not in known:
+                raise SceneError(f"{name} is {getattr(self, name)!r}; it must be one of {', '.join(known)}")
         if not (np.isfinite(self.ao_distance) and self.ao_distance >= 0.0):
             raise SceneError(f"ao_distance is {self.ao_distance}; it must be finite and not negative")
         if not 0.0 <= self.ao_factor <= 1.0:

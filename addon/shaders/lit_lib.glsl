@@ -16,7 +16,7 @@
 /* A surface being lit. */
 struct Lit {
   Surface surface;
-  vec3 normal; /* shading normal on the side of the path ray */
+  vec3 normal; /* shading normal on the side of the path ray, of what is diffuse */
   vec3 view;   /* direction of the path ray */
   vec3 diffuse;
   vec3 highlight;
@@ -45,8 +45,18 @@ struct Lit {
 #endif
 #ifdef HAS_NORMALS
   vec3 smooth_normal; /* what `normal` replaces, which is the same where a material has none */
+  vec3 mirror_normal; /* the same of mirrors: they look at the path ray and mirror it off the surface */
 #endif
 };
+
+vec3 lit_mirror_normal(Lit lit)
+{
+#ifdef HAS_NORMALS
+  return lit.mirror_normal;
+#else
+  return lit.normal;
+#endif
+}
 
 /* Whether light that comes from the other side of a lit surface is to be seen. */
 bool lit_through(Lit lit)
@@ -59,6 +69,12 @@ bool lit_through(Lit lit)
   through = through || optics_largest(lit.translucent) > 0.0;
 #endif
   return through;
+}
+
+/* Whether light from `direction`, of a cosine to the normal of what is diffuse, comes from the side of the path ray. */
+bool lit_before(Lit lit, vec3 direction, float cosine)
+{
+  return cosine > 0.0 || dot(lit_mirror_normal(lit), direction) > 0.0;
 }
 
 /* Whether lights add anything. */
@@ -115,7 +131,7 @@ float lit_behind(Lit lit)
 /* The same of rough mirrors and rough glass; see `gloss_lit` for `asked`. */
 vec3 lit_glossy(Lit lit, vec3 direction, float asked)
 {
-  return gloss_lit(lit.material, lit.eta, lit.normal, -lit.view, direction, lit.of_coat, asked);
+  return gloss_lit(lit.material, lit.eta, lit_mirror_normal(lit), -lit.view, direction, lit.of_coat, asked);
 }
 #endif
 
@@ -123,7 +139,7 @@ vec3 lit_glossy(Lit lit, vec3 direction, float asked)
 vec3 lit_plain(Lit lit, vec3 direction, float cosine)
 {
   vec3 share = lit_diffuse(lit, direction, cosine);
-  float alignment = max(dot(optics_mirror(lit.view, lit.normal), direction), 0.0);
+  float alignment = max(dot(optics_mirror(lit.view, lit_mirror_normal(lit)), direction), 0.0);
   if (optics_largest(lit.highlight) > 0.0 && alignment > 0.0 && cosine > 0.0) {
     share += lit.highlight * pow(alignment, lit.shine);
   }

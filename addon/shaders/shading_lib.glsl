@@ -91,11 +91,10 @@ Ray shading_refracted(Surface surface, vec3 bent, vec3 face, int kind)
 }
 
 #ifdef HAS_NORMALS
-/* A material's own normal as a unit vector that `incoming` looks at, and by which it is mirrored off the surface: the reflected
- * ray is lifted over it where it is not, and the normal is the one that mirrors it so. */
+/* A unit normal as mirrors have it: one that `incoming` looks at, and by which it is mirrored off the surface. The reflected ray is
+ * lifted over it where it is not, and the normal is the one that mirrors it so. */
 vec3 shading_bent_normal(vec3 normal, vec3 incoming, vec3 face)
 {
-  normal = normalize(normal);
   vec3 mirrored = optics_mirror(incoming, normal);
   float height = -dot(incoming, face);
   float lacking = min(0.9 * height, 0.01) - dot(mirrored, face);
@@ -175,9 +174,12 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
   }
 #ifdef HAS_NORMALS
   lit.smooth_normal = normal;
+  vec3 told = normal;
   if (optics_largest(abs(material.normal)) > 0.0) {
-    normal = shading_bent_normal(material.normal, incoming, face);
+    told = normalize(material.normal);
+    normal = shading_bent_normal(told, incoming, face);
   }
+  lit.mirror_normal = normal;
 #endif
   bool culled = false;
 #ifdef HAS_CULLING
@@ -310,7 +312,11 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
   lit.of_coat = of_coat;
 #endif
   lit.surface = surface;
+#ifdef HAS_NORMALS
+  lit.normal = told;
+#else
   lit.normal = normal;
+#endif
   lit.view = incoming;
   lit.diffuse = path.weight * material.diffuse;
   lit.highlight = path.weight * material.highlight;
@@ -363,7 +369,9 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
     scattered.refracted = shading_path(ray, 1e30, through, path.depth + 1, beyond);
     scattered.refracted.length_before = straight ? path.length_before + hit.t : 0.0;
 #ifdef HAS_ROUGHNESS
-    scattered.refracted.density = straight ? shading_density_passed(path.density, SHADOWS_TINTED) : density_bent;
+    bool shadows_pass = optics_largest(shadow_passed(material)) > 0.0;
+    float density_straight = shading_density_passed(path.density, shadows_pass);
+    scattered.refracted.density = straight ? density_straight : density_bent;
 #endif
 #ifdef HAS_LIGHT_PATH
     scattered.refracted.passed = path.passed + (straight ? 1 : 0);

@@ -9,6 +9,9 @@
 #ifdef TINTED_SHADOWS
 #define SHADOWS_PASS true
 #else
+#ifdef TRANSPARENT_SHADOWS
+#define SHADOWS_PASS true
+#else
 #ifdef CULLED_SHADOWS
 #define SHADOWS_PASS true
 #else
@@ -19,11 +22,6 @@
 #endif
 #endif
 #endif
-
-#ifdef TINTED_SHADOWS
-#define SHADOWS_TINTED true
-#else
-#define SHADOWS_TINTED false
 #endif
 
 #define SHADOW_WORLD 0x40000000 /* what is sampled of the world has numbers that lamps do not reach */
@@ -110,7 +108,7 @@ bool shadow_to_world(inout Shadow shadow, Lit lit)
   shadow.ray = ray_make(shadow_origin(lit, direction), direction, lit.shadow);
   shadow.t_max = 1e30;
 #ifdef HAS_ROUGHNESS
-  shadow.media = cosine > 0.0 ? lit.media : lit.beyond;
+  shadow.media = lit_before(lit, direction, cosine) ? lit.media : lit.beyond;
 #endif
   return optics_largest(shadow.contribution) > 0.0;
 }
@@ -250,7 +248,8 @@ bool shadow_to_light(inout Shadow shadow, inout Lit lit, inout int index, inout 
   }
 #endif
   float cosine = dot(lit.normal, direction);
-  if (cosine <= 0.0 && !lit_through(lit)) {
+  bool before = lit_before(lit, direction, cosine);
+  if (!before && !lit_through(lit)) {
     return false;
   }
   Lit seeing = shadow_seeing(lit, light);
@@ -291,7 +290,7 @@ bool shadow_to_light(inout Shadow shadow, inout Lit lit, inout int index, inout 
   shadow.ray = ray;
   shadow.t_max = t_max;
 #ifdef HAS_ROUGHNESS
-  shadow.media = cosine > 0.0 ? lit.media : lit.beyond;
+  shadow.media = before ? lit.media : lit.beyond;
 #endif
   shadow.contribution = contribution;
   shadow.tint = vec3(1.0);
@@ -344,6 +343,20 @@ vec3 shadow_arrived(Shadow shadow)
   return light;
 }
 
+/* The share of a light that its shadow rays take along through a surface. */
+vec3 shadow_passed(Material material)
+{
+#ifdef TINTED_SHADOWS
+  return material.transmit;
+#else
+#ifdef TRANSPARENT_SHADOWS
+  return material.straight;
+#else
+  return vec3(0.0);
+#endif
+#endif
+}
+
 /* Take a shadow ray through the surface that it has hit after `t`; false when it ends there or what is left is not worth following. */
 bool shadow_pass(inout Shadow shadow, float t, Surface surface, Material material)
 {
@@ -351,11 +364,6 @@ bool shadow_pass(inout Shadow shadow, float t, Surface surface, Material materia
   bool culled = false;
 #ifdef CULLED_SHADOWS
   culled = !leaves && material.cull_back_shadow > 0.5; /* as the light sees it, which looks the other way */
-#endif
-#ifdef TINTED_SHADOWS
-  vec3 transmit = material.transmit;
-#else
-  vec3 transmit = vec3(0.0);
 #endif
   bool glows = false;
 #ifdef HAS_VARYING_EMITTERS
@@ -372,7 +380,7 @@ bool shadow_pass(inout Shadow shadow, float t, Surface surface, Material materia
   shadow.t_max = glows ? t : shadow.t_max; /* there it ends */
   culled = culled || glows;
 #endif
-  shadow.tint *= culled ? vec3(1.0) : transmit;
+  shadow.tint *= culled ? vec3(1.0) : shadow_passed(material);
 #ifdef HAS_ABSORPTION
   bool borders = material.bounds_body > 0.5 && !culled;
   shadow.tint *= optics_absorb(borders && leaves ? material.absorption : medium_absorption(shadow.media), t);
@@ -383,5 +391,5 @@ bool shadow_pass(inout Shadow shadow, float t, Surface surface, Material materia
   shadow.ray.origin = ray_spawn(surface, shadow.ray.direction);
   shadow.t_max -= t;
   shadow.surfaces++;
-  return optics_largest(shadow.tint) > frame_weight_cutoff && shadow.surfaces <= TINTED_SHADOW_SURFACES;
+  return optics_largest(shadow.tint) > frame_weight_cutoff && shadow.surfaces <= SHADOW_SURFACES;
 }

@@ -17,16 +17,18 @@ vec2 sky_place(vec3 direction, float rotation, float rows)
   return vec2(0.5 + (azimuth - rotation) / TWO_PI, clamp(row, 0.5 / rows, 1.0 - 0.5 / rows));
 }
 
-/* Radiance of the sun's disc, seen under `half_angle` from its middle to its edge, which darkens towards the edge; `lower`
-   and `upper` at its lowest and highest point. Below `horizon`, an elevation, the earth hides it. */
-vec3 sky_sun(vec3 direction, vec3 sun, float half_angle, float horizon, vec3 lower, vec3 upper)
+/* Radiance of a `sky` with the sun's disc, seen under `half_angle` from its middle to its edge, which darkens towards
+   the edge; `lower` and `upper` at its lowest and highest point. Below `horizon`, an elevation, the earth hides it.
+   `before`: how much of the sky is seen before the disc. */
+vec3 sky_with_sun(
+    vec3 sky, vec3 direction, vec3 sun, float half_angle, float horizon, vec3 lower, vec3 upper, float before)
 {
   float angle = 2.0 * atan(length(direction - sun), length(direction + sun));
   float elevation = sky_elevation(direction);
   if (angle >= half_angle || elevation <= horizon) {
-    return vec3(0.0);
+    return sky;
   }
   float height = 0.5 + 0.5 * (elevation - sky_elevation(sun)) / half_angle;
   float share = angle / half_angle;
-  return mix(lower, upper, height) * (0.4 + 0.6 * sqrt(1.0 - share * share));
+  return sky * before + mix(lower, upper, height) * (0.4 + 0.6 * sqrt(1.0 - share * share));
 }

@@ -14,11 +14,12 @@ from .lobes import (
     normal_reflectance,
     varnished,
 )
-from .shader_nodes.registry import Node
+from .shader_nodes.registry import Node, readers_into
 from .tree_reader import listed
 
 #: Functions by the type of the node: `read(n)` with a `ClosureNode` gives `Lobes`.
 CLOSURES = {}
+closure = readers_into(CLOSURES)
 #: Inputs that change nothing here; linked, or set to something, they are reported once for each material.
 _IGNORED = (
     "Coat Normal",
@@ -31,18 +32,6 @@ _IGNORED = (
 )
 _GREY = (0.8, 0.8, 0.8)
 _SMALLEST_IOR = 1e-3
-
-
-def closure(*types):
-    """Decorate the function that reads shader nodes of these types."""
-
-    def enter(function):
-        for node_type in types:
-            assert node_type not in CLOSURES, node_type
-            CLOSURES[node_type] = function
-        return function
-
-    return enter
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Images of Blender as engine images, each read once, whatever nodes use it."""
+"""Images of Blender as engine images, each read once, whatever nodes use it, and again where it changed."""
 
 from dataclasses import dataclass
 
-import bpy
 import numpy as np
 
 from ..engine.expression import Parameter, call
 from ..engine.image import Image
-from .image_pixels import Linear, file_path, frame_path, read_file, read_image, read_tiles, to_linear
+from .color_spaces import working_space
+from .image_pixels import Linear, file_path, frame_path, read_clean_file, read_file, read_tiles, to_linear
 from .keys import original_key
 from .memory import Memory
 from .reports import Reports
@@ -41,13 +41,13 @@ _VACANT = Image(np.zeros((1, 1, 4), np.uint8), name="vacant")
 
 class Images:
     """The images of a scene at a frame. `numbers`: (first, count) by key of those of earlier reads, which the scene has
-    already. `asked`: the numbers of all that were asked for, in order."""
+    already. `asked`: the numbers of all that were asked for, in order; `keys`: (uid, path) of what was read."""
 
     def __init__(self, scene, frame=1, memory=None, numbers=None):
         self._scene, self._frame = scene, frame
         self._memory = memory or Memory(Reports(lambda level, message: None))
         self._numbers = {} if numbers is None else numbers
-        self.asked = []
+        self.asked, self.keys = [], set()
 
     def picture(self, node, warn, *, divided=False):
         """The `Picture` of an image or environment texture node; None where it is missing.
@@ -65,6 +65,7 @@ class Images:
         if not tiles:
             return None
         sampling = {
+            "name": node.image.name,
             "interpolation": _INTERPOLATIONS.get(node.interpolation, "LINEAR"),
             "extension": getattr(node, "extension", "REPEAT"),  # a panorama has none
             "divided": divided and not any(tile.is_straight for tile in tiles.values()),
@@ -76,7 +77,7 @@ class Images:
     def table(self, key, make):
         """The `Picture` of what `make` gives, pixels (h, w, 3 or 4) float32, mixed linearly and repeated; made once for
         a key."""
-        return self._numbered(("table", *key), None, lambda: ([Image(make(), name=key[0])], False))
+        return self._numbered(("table", working_space(), *key), None, lambda: ([Image(make(), name=key[0])], False))
 
     def finish(self):
         """The read is over: what nobody asked for makes room."""
@@ -123,6 +124,7 @@ class Images:
     def _read(self, node, key, previous):
         """(the `Linear` by number of the tiles of a node's image, of most one; what there is to report). Without tiles
         where it has none. What is as before is the same object."""
+        self.keys.add(key)
         self._memory.depend(key[0], *([FRAME] if node.image.source in ("SEQUENCE", "MOVIE") else []))
         image, path, notes = node.image, key[1], []
         tiles = read_tiles(image) if image.source == "TILED" else {0: self._stored(image, path, notes.append)}
@@ -138,7 +140,7 @@ class Images:
     def _stored(self, image, path, warn):
         if image.source == "MOVIE":
             warn(f"of image {image.name!r}, a movie, only the first frame is rendered")
-        return read_file(path, image) if path else read_image(image)
+        return read_file(path, image) if path else read_clean_file(image)
 
     def _report_lost(self, image, path, tiles, warn):
         """Report an image that cannot be read, or those `tiles` of it."""
@@ -166,7 +168,7 @@ class Images:
 def _images(image, tiles, sampling):
     """(the engine's images of tiles by number, pink where one is missing; whether they are tiles)."""
     every = (tiles.get(i, _MISSING_TILE) for i in range(max(tiles) + 1))
-    made = [Image(tile.pixels, name=image.name, srgb=tile.srgb, **sampling) for tile in every]
+    made = [Image(tile.pixels, srgb=tile.srgb, **sampling) for tile in every]
     return made, image.source == "TILED"
 
 
@@ -178,13 +180,3 @@ def _alike(tiles, others):
         and np.array_equal(tile.pixels, others[number].pixels)
         for number, tile in tiles.items()
     )
-
-
-def states(known):
-    """What of Blender's images with the uids `known` Blender does not report, by uid."""
-    return {uid: _state(image) for image in bpy.data.images if (uid := original_key(image)) in known}
-
-
-def _state(image):
-    settings = image.colorspace_settings
-    return image.source, image.filepath, image.alpha_mode, settings.name, settings.is_data, tuple(image.size)

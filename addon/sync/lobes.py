@@ -121,6 +121,7 @@ class Lobes:
             fresnel=0.0 if is_zero(self.varnish) and is_zero(self.glass) else 1.0,
             absorption=absorption,
             coat=self.coat,
+            straight=self.clear,
             **body,
             **{name: getattr(self, name) for name in _AS_THEY_ARE},
         )

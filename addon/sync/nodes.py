@@ -4,6 +4,8 @@
 import re
 from dataclasses import dataclass
 
+#: Types of sockets whose values are numbers.
+NUMBERS = ("VALUE", "INT")
 _NUMBERED = re.compile(r"^\d+_")
 #: Outputs that only one engine uses are taken where there is no other.
 _TARGETS = ("ALL", "CYCLES", "EEVEE")
@@ -14,13 +16,14 @@ class Source:
     """What feeds a socket: `output` of `node`; or nothing, then `node` is None and `socket.default_value` counts.
 
     `groups` are the group nodes that one has entered on the way, outermost first: sockets of `node` are followed with
-    them.
+    them. `passed` are the types of the sockets that hand the value on, in their order: each converts it to its own.
     """
 
     socket: object
     node: object = None
     output: object = None
     groups: tuple = ()
+    passed: tuple = ()
 
     @property
     def type(self):
@@ -29,8 +32,15 @@ class Source:
 
     @property
     def constant(self):
-        """The value of the socket where nothing feeds it; None for a shader."""
+        """The value of the socket where nothing feeds it; None for a shader. In Cycles a muted node's has none."""
+        if self.socket.node.mute:
+            return 0.0 if self.socket.type in NUMBERS else (0.0, 0.0, 0.0)
         return getattr(self.socket, "default_value", None)
+
+    @property
+    def socket_type(self):
+        """The type of the socket that makes the value: VALUE, RGBA, VECTOR ..."""
+        return (self.output or self.socket).type
 
     def input(self, name):
         """What feeds the input called or numbered `name` of this node, or None where the node has no such input."""
@@ -75,15 +85,15 @@ def output_source(tree, socket_name):
 def source_of(socket, groups=()):
     """Follow the link into `socket` to the node that makes its value. Where links go in a circle it is as if
     nothing were linked."""
-    first, passed = Source(socket, groups=groups), set()
+    first, seen, passed = Source(socket, groups=groups), set(), ()
     while True:
         place = (socket.as_pointer(), *(group.as_pointer() for group in groups))
-        if place in passed:
+        if place in seen:
             return first
-        passed.add(place)
+        seen.add(place)
         link = next((link for link in socket.links if link.is_valid and not link.is_muted), None)
         if link is None:
-            return Source(socket, groups=groups)
+            return Source(socket, groups=groups, passed=passed)
         node, output = link.from_node, link.from_socket
         if node.type == "REROUTE":
             following = node.inputs[0]
@@ -94,10 +104,10 @@ def source_of(socket, groups=()):
         elif node.type == "GROUP":
             following, groups = _group_output(node, output), (*groups, node)
         else:
-            return Source(socket, node, output, groups)
+            return Source(socket, node, output, groups, passed)
         if following is None:
-            return Source(socket, groups=groups)
-        socket = following
+            return Source(socket, groups=groups, passed=passed)
+        socket, passed = following, (output.type, *passed)
 
 
 def _through_muted(node, output):

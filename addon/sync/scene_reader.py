@@ -11,7 +11,8 @@ from ..fingerprint import fingerprint
 from .attributes import key_of
 from .camera import camera_of_render
 from .changes import Changes, ids_in
-from .images import FRAME, Images, states
+from .image_state import changed_images, image_states
+from .images import FRAME, Images
 from .instancing import SceneCopies
 from .keys import original_key
 from .lights import Lights
@@ -112,8 +113,7 @@ class SceneReader:
         frame = depsgraph.scene_eval.frame_current
         if frame != self._frame:
             tokens.add(FRAME)
-        states_now = states(self._states)
-        tokens |= {uid for uid in self._states if self._states[uid] != states_now.get(uid)}
+        tokens |= changed_images(self._states, image_states(self._states))
         graph = original_key(depsgraph.scene), depsgraph.view_layer.name, depsgraph.mode
         self._memory.begin(reports, tokens, changes.everything or graph != self._graph)
         self._frame, self._graph = frame, graph
@@ -151,7 +151,8 @@ class SceneReader:
         _settle_replacements(scene)
         self._memory.end()
         images.finish()
-        self._states = states({key[1] for key in self._image_numbers if key[0] == "picture"})
+        known = {*self._states, *images.keys}
+        self._states = image_states(key for key in known if self._memory.last(("image", *key)) is not None)
         scene.materials, scene.images = list(self._materials), list(self._images)
         used = sum(self._memory.last(key) is not None for key in self._material_numbers)
         if len(self._materials) > 2 * used + _SPARE_MATERIALS:

@@ -23,7 +23,7 @@ def sync_settings(scene, preview=False):
         samples=conic.preview_samples if preview else conic.samples,
         max_depth=conic.max_depth,
         weight_cutoff=conic.weight_cutoff,
-        tinted_shadows=conic.shadows == "TINTED",
+        shadows=conic.shadows,
         film_transparent=scene.render.film_transparent,
         flat_colors=conic.use_flat_colors,
         depth_cue=_depth_cue(conic) if conic.use_depth_cue else None,

@@ -58,11 +58,13 @@ def _of_atmosphere(node, vector, images):
         return seen
     half_angle = max(node.sun_size, _SMALLEST_SUN) / 2.0
     lower, upper = np.maximum(model_sun(elevation, half_angle, *given) @ from_rec_709(), 0.0) * node.sun_intensity
-    if node.sky_type == "NISHITA" and -half_angle < elevation < half_angle:  # before 5.0 what has set does not count
+    is_old = node.sky_type == "NISHITA"  # before 5.0 what has set does not count, and the sun hides the sky
+    if is_old and -half_angle < elevation < half_angle:
         lower += (upper - lower) * (elevation - half_angle) / (elevation + half_angle)
     across = np.cos(elevation)
     towards = (across * np.sin(rotation), across * np.cos(rotation), np.sin(elevation))
-    return seen + call("sky_sun", vector, *map(Parameter, (towards, half_angle, horizon, lower, upper)))
+    numbers = (towards, half_angle, horizon, lower, upper, 0.0 if is_old else 1.0)
+    return call("sky_with_sun", seen, vector, *map(Parameter, numbers))
 
 
 def _upright(elevation, rotation):

@@ -6,6 +6,8 @@ import sys
 
 from ..engine.expression import Parameter, as_type, call, luminance, mean
 from .attributes import key_of
+from .nodes import NUMBERS
+from .shader_nodes.math import of
 from .shader_nodes.registry import ENTRIES, Node, attribute_color, output_of
 
 #: Frames of Python for one node of a chain, and for the longest chain that is read.
@@ -31,11 +33,7 @@ class TreeReader:
     def number(self, source):
         """What feeds a socket as a number, converted as Blender does."""
         value = self.value(source)
-        if value.type == "float":
-            return value
-        kind = "" if source is None else (source.output or source.socket).type
-        value = as_type(value, "vec3")
-        return luminance(value) if kind == "RGBA" else mean(value)
+        return value if source is None else _as_number(value, (source.socket_type, *source.passed)[-1])
 
     def color(self, source):
         """What feeds a socket as a colour or vector."""
@@ -45,6 +43,12 @@ class TreeReader:
         """What feeds a socket, a `Source` or None, as an Expression."""
         if source is None:
             return Parameter(0.0)
+        value, kind = self._made(source), source.socket_type
+        for following in source.passed:
+            value, kind = _converted(value, kind, following), following
+        return value
+
+    def _made(self, source):
         if source.node is None:
             return self._constant(source)
         key = source.key
@@ -141,6 +145,22 @@ def parameter_of(value):
     if isinstance(value, (bool, int, float)):
         return Parameter(float(value))
     return Parameter(tuple(float(c) for c in value)[:3])
+
+
+def _as_number(value, kind):
+    """A value of a socket of type `kind` as a number."""
+    if value.type == "float":
+        return value
+    value = as_type(value, "vec3")
+    return luminance(value) if kind == "RGBA" else mean(value)
+
+
+def _converted(value, kind, to):
+    """A value of a socket of type `kind` as a socket of type `to` hands it on."""
+    if to not in NUMBERS:
+        return as_type(value, "vec3")
+    value = _as_number(value, kind)
+    return of("math_truncate", value) if to == "INT" else value
 
 
 def _shown(rgb):

@@ -23,11 +23,15 @@ class Synced:
         return [text for level, text in self.messages if level == "WARNING" and all(word in text for word in words)]
 
 
-def sync(width=64, height=48):
-    """The engine scene of Blender's scene."""
+def sync(width=64, height=48, **settings):
+    """The engine scene of Blender's scene; `settings` of `sync_scene`."""
     synced = Synced(None)
     synced.scene = sync_scene(
-        bpy.context.evaluated_depsgraph_get(), width, height, report=lambda *message: synced.messages.append(message)
+        bpy.context.evaluated_depsgraph_get(),
+        width,
+        height,
+        report=lambda *message: synced.messages.append(message),
+        **settings,
     )
     return synced
 

@@ -3,7 +3,7 @@
 import bpy
 import pytest
 
-from tests.blender.shading_table import cases, tested
+from tests.blender.shading_table import cases, keys_to_test
 from tests.blender.shading_table.drawing import compare, faults, pictures
 
 
@@ -24,7 +24,7 @@ def _draw_with(key, drawn, items):
         drawn.update(dict.fromkeys(keys, error))
 
 
-@pytest.mark.parametrize("key", tested())
+@pytest.mark.parametrize("key", keys_to_test())
 def test_case(key, drawn, request, record_property):
     case = cases()[key]
     if key not in drawn:

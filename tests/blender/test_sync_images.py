@@ -71,7 +71,7 @@ def test_non_color_image_is_raw():
 
 
 def test_float_image_is_linear_as_it_is():
-    (read,) = synced_with(textured(image(ramp() * 10.0, float_buffer=True))).scene.images
+    (read,) = synced_with(textured(image(ramp() * (10.0, 10.0, 10.0, 1.0), float_buffer=True))).scene.images
     np.testing.assert_allclose(read.pixels[..., :3], ramp()[..., :3] * 10.0, rtol=1e-6)
     assert read.pixels.dtype == np.float32 and not read.srgb
 

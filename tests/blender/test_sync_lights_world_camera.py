@@ -302,7 +302,7 @@ def test_settings():
     scene.conic.shadows, scene.conic.weight_cutoff = "OPAQUE", 1.0
     scene.render.film_transparent = True
     settings = sync_settings(scene)
-    assert (settings.samples, settings.max_depth, settings.tinted_shadows) == (7, 5, False)
+    assert (settings.samples, settings.max_depth, settings.shadows) == (7, 5, "OPAQUE")
     assert settings.film_transparent and settings.weight_cutoff < 1.0
     assert sync_settings(scene, preview=True).samples == 3
 

@@ -37,7 +37,7 @@ DEFAULTS = {
     "preview_pause": False,
     "max_depth": 8,
     "weight_cutoff": 1 / 512,
-    "shadows": "TINTED",
+    "shadows": "TRANSPARENT",
     "recognise": "ALWAYS",
     "curve_sampling": "PIXELS",
     "curve_tolerance": 0.25,

@@ -63,7 +63,7 @@ def _read_ppm(data, width, height):
 def scene_text(scene, settings):
     """The scene in POV-Ray's language. Raises NotInPovrayError for what it cannot say."""
     transmits = any(max(material.transmit) > 0.0 for material in scene.materials)
-    if transmits and scene.lights and not settings.tinted_shadows:
+    if transmits and scene.lights and settings.shadows != "TINTED":
         raise NotInPovrayError("POV-Ray has no opaque shadows of transparent bodies")
     if settings.weight_cutoff > 0.0 or settings.samples > 1 or settings.corner_rays or scene.world.image >= 0:
         raise NotInPovrayError("compare without weight cut-off, with one sample and a plain sky")

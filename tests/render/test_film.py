@@ -25,7 +25,7 @@ from .compare import psnr, save_difference
 from .scenes import still_life
 
 SIZE = (96, 72)
-SETTINGS = Settings(max_depth=8, weight_cutoff=0.0, tinted_shadows=True)
+SETTINGS = Settings(max_depth=8, weight_cutoff=0.0, shadows="TINTED")
 
 
 def moved(scene, scale, offset):

@@ -6,7 +6,7 @@ import pytest
 from addon.engine import Camera, Geometry, Image, Instances, Light, Material, Scene, Settings, Spheres, World, render
 from addon.engine.material import surface_image
 
-SETTINGS = Settings(max_depth=12, weight_cutoff=0.0, tinted_shadows=True)
+SETTINGS = Settings(max_depth=12, weight_cutoff=0.0, shadows="TINTED")
 SIZE = (96, 72)
 COUNT = 100_000
 ROOM = 6.0

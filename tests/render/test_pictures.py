@@ -22,7 +22,7 @@ REFERENCE = "llvmpipe"
 
 def everything():
     """All kinds, media and lights, one ray a pixel."""
-    return still_life(), Settings(max_depth=8, tinted_shadows=True)
+    return still_life(), Settings(max_depth=8, shadows="TINTED")
 
 
 def antialiased():
@@ -30,7 +30,7 @@ def antialiased():
     scene = still_life()
     scene.planes.clear()
     scene.camera = Camera.orthographic_at((1.0, -3.0, 5.0), (0.0, -0.2, 0.4), 4.0, aspect=SIZE[0] / SIZE[1])
-    return scene, Settings(samples=16, film_transparent=True, tinted_shadows=True)
+    return scene, Settings(samples=16, film_transparent=True, shadows="TINTED")
 
 
 def opaque_shadows():

@@ -28,7 +28,7 @@ from . import povray
 from .compare import psnr, save_difference, silhouette_distance
 
 SIZE = (200, 150)
-SETTINGS = Settings(max_depth=8, weight_cutoff=0.0, tinted_shadows=True)
+SETTINGS = Settings(max_depth=8, weight_cutoff=0.0, shadows="TINTED")
 DECIBELS = 40.0
 TYPICAL_DIFFERENCE = 2e-4
 RED = Material(diffuse=(0.75, 0.2, 0.1))

@@ -16,6 +16,7 @@ from addon.engine import (
     World,
     render,
 )
+from addon.engine.settings import SHADOWS
 
 CATCHER = Visibility.ALL | Visibility.SHADOW_CATCHER
 SKY = np.array((0.2, 0.4, 0.8))
@@ -57,10 +58,10 @@ IN_SHADOW, BESIDE = (0.0, 0.0, 0.5), (3.0, 0.0, 0.5)
 
 
 @each_floor
-@pytest.mark.parametrize("tinted", [False, True])
-def test_shadow_over_either_film(device, floor, tinted):
+@pytest.mark.parametrize("shadows", SHADOWS)
+def test_shadow_over_either_film(device, floor, shadows):
     """Nothing but alpha over a transparent film; over an opaque one the sky behind, darkened."""
-    settings = dict(tinted_shadows=tinted)
+    settings = dict(shadows=shadows)
     scene = scene_with(floor, SUN)
     assert pixel(device, scene, IN_SHADOW, **settings) == pytest.approx([0.0, 0.0, 0.0, 1.0])
     assert pixel(device, scene, BESIDE, **settings) == pytest.approx([0.0] * 4)

@@ -17,6 +17,7 @@ from addon.engine import (
     render,
 )
 from addon.engine.material import surface_attribute, surface_image
+from addon.engine.settings import SHADOWS
 
 from .probe import along
 
@@ -192,8 +193,8 @@ def test_one_sided_triangle(device):
     assert along(device, scene, (9.0, 0.0, 6.0), down, SETTINGS) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize("tinted", [False, True])
-def test_shadow_of_an_absorbing_plate(device, tinted):
+@pytest.mark.parametrize("shadows", SHADOWS)
+def test_shadow_of_an_absorbing_plate(device, shadows):
     """Opaque as in the paper, or what two surfaces and the way between them let through."""
     material = Material.glass((0.9, 0.8, 0.7), absorption=(0.2, 0.5, 1.0))
     scene = Scene(world=World((0.0, 0.0, 0.0)), materials=[Material(diffuse=1.0), material, Material(diffuse=0.0)])
@@ -201,10 +202,34 @@ def test_shadow_of_an_absorbing_plate(device, tinted):
     scene.add_plane((0.0, 0.0, 2.0), (0.0, 0.0, 1.0), 1)
     scene.add_plane((0.0, 0.0, 1.0), (0.0, 0.0, -1.0), 1)
     scene.add_light(Light.sun((0.6, 0.0, 0.8), np.pi))
-    settings = Settings(max_depth=8, weight_cutoff=0.0, tinted_shadows=tinted)
+    settings = Settings(max_depth=8, weight_cutoff=0.0, shadows=shadows)
     color = along(device, scene, (0.0, 0.0, 0.5), (0.0, 0.0, -1.0), settings)
     through = 0.8 * np.array([0.9, 0.8, 0.7]) ** 2 * np.exp(-np.array([0.2, 0.5, 1.0]) / 0.8)
-    assert color == pytest.approx(through if tinted else 0.0, abs=1e-5)
+    assert color == pytest.approx(through if shadows == "TINTED" else 0.0, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    "shadows, passed",
+    [
+        ("OPAQUE", (0.0, 0.0, 0.0)),
+        ("TRANSPARENT", (0.5 * 0.3, 0.2 * 0.1, 0.0)),
+        ("TINTED", (0.5 * 0.5, 0.2 * 0.4, 0.0)),
+    ],
+)
+def test_shadow_of_what_transmits(device, shadows, passed):
+    """Of a sheet, of one that bends a part of the light and of a body without index: what passes each straight, or all
+    that passes."""
+    sheet = Material(diffuse=0.2, transmit=(0.5, 0.2, 0.0), ior=1.0)
+    body = Material(diffuse=0.0, transmit=0.9, ior=1.0)
+    mixed = Material(diffuse=0.0, transmit=(0.5, 0.4, 0.0), straight=(0.3, 0.1, 0.0), fresnel=False)
+    scene = Scene(world=World((0.0, 0.0, 0.0)), materials=[Material(diffuse=1.0), sheet, body, mixed])
+    scene.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0)
+    scene.add_discs([(0.0, 0.0, 1.0), (0.0, 0.0, 1.5)], (0.0, 0.0, 1.0), 1.0, [1, 3])
+    scene.add_spheres((0.0, 0.0, 4.0), 1.0, 2)
+    scene.add_light(Light.sun((0.0, 0.0, 1.0), np.pi))
+    settings = Settings(max_depth=8, weight_cutoff=0.0, shadows=shadows)
+    color = along(device, scene, (0.0, 0.0, 0.5), (0.0, 0.0, -1.0), settings)
+    assert color == pytest.approx(0.9**2 * np.array(passed))
 
 
 @pytest.mark.parametrize("shadow", [True, False])
@@ -232,7 +257,7 @@ def test_light_within_an_absorbing_body(device):
     scene.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0)
     scene.add_spheres([(0.0, 0.0, 5.0), (0.0, 0.0, 5.0)], [1.0, 3.0], [1, 2])
     scene.add_light(Light.constant((0.0, 0.0, 5.0)))
-    settings = Settings(max_depth=8, weight_cutoff=0.0, tinted_shadows=True)
+    settings = Settings(max_depth=8, weight_cutoff=0.0, shadows="TINTED")
     color = along(device, scene, (0.0, 0.0, 0.5), (0.0, 0.0, -1.0), settings)
     assert color == pytest.approx(
         np.exp(-1.0 * np.array(inner.absorption) - 2.0 * np.array(outer.absorption)), rel=5e-5

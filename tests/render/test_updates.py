@@ -225,7 +225,7 @@ class Stage:
             {"samples": 2},
             {"samples": 1},
             {"max_depth": 3},
-            {"tinted_shadows": True},
+            {"shadows": "TINTED"},
             {"depth_cue": DepthCue()},
         ]
         self.settings = replace(self.settings, **options[self.any_of(options)])

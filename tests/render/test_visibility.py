@@ -18,6 +18,7 @@ from addon.engine import (
     World,
     render,
 )
+from addon.engine.settings import SHADOWS
 
 from .probe import along
 
@@ -75,9 +76,9 @@ def test_camera_rays(device, kind):
 
 
 @each_kind
-@pytest.mark.parametrize("tinted", [False, True])
-def test_shadow_rays(device, kind, tinted):
-    settings = Settings(max_depth=8, weight_cutoff=0.0, tinted_shadows=tinted)
+@pytest.mark.parametrize("shadows", SHADOWS)
+def test_shadow_rays(device, kind, shadows):
+    settings = Settings(max_depth=8, weight_cutoff=0.0, shadows=shadows)
     for visibility, expected in ((Visibility.ALL, 0.0), (without(Visibility.SHADOW), 1.0)):
         scene = world(thing(kind, visibility))
         assert along(device, scene, (0.0, 0.0, 1.0), DOWN, settings) == pytest.approx(expected)
@@ -177,10 +178,10 @@ def test_culled_backs_are_passed(device):
     assert along(device, sheets(20, cull_back=True), (0.0, 0.0, 9.0), DOWN, shallow) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize("tinted", [False, True])
-def test_culled_shadows(device, tinted):
+@pytest.mark.parametrize("shadows", SHADOWS)
+def test_culled_shadows(device, shadows):
     """The side that the light sees counts, as in EEVEE: only sheets that turn their back to it cast no shadow."""
-    settings = Settings(max_depth=8, weight_cutoff=0.0, tinted_shadows=tinted)
+    settings = Settings(max_depth=8, weight_cutoff=0.0, shadows=shadows)
     for facing, culling, expected in (
         (UP, {"cull_back_shadow": True}, 0.0),
         (DOWN, {"cull_back_shadow": True}, 1.0),

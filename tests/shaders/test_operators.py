@@ -14,7 +14,7 @@ _TAKES = {
     "select": ("float", "vec3", "vec3"),
     "less": ("float", "float"),
 }
-_OF_ONE = ("sqrt", "absolute", "mean", "luminance", "largest", "settled", "x", "y", "z")
+_OF_ONE = ("sqrt", "absolute", "exp", "mean", "luminance", "largest", "settled", "x", "y", "z")
 _SPECIAL = (0.0, 1.0, -1.0, 0.5, 2.0)
 
 

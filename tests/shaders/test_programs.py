@@ -6,7 +6,7 @@ from addon.engine import shader_source
 from addon.engine.node_programs import NodePrograms
 from addon.engine.shader_source import NEEDS
 
-CONSTANTS = {"BVH_STACK_SIZE": 8, "PATH_STACK_SIZE": 4, "TINTED_SHADOW_SURFACES": 4, "UNENDED_ALPHA": -1.0}
+CONSTANTS = {"BVH_STACK_SIZE": 8, "PATH_STACK_SIZE": 4, "SHADOW_SURFACES": 4, "UNENDED_ALPHA": -1.0}
 ALL = shader_source.FEATURES
 NO_PROGRAMS = (("programs_lib.glsl", NodePrograms().text()),)
 COMBINATIONS = (

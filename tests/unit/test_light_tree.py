@@ -180,7 +180,7 @@ def test_glow_that_varies_is_asked_where_the_shadow_ray_ends():
     scene = scene_of(component(call("point_uv"), 0))
     scene.add_discs((0, 0, 0), (0, 0, 1), 1.0, 1)
     made = packed(scene)
-    assert "HAS_VARYING_EMITTERS" in made.features and made.shadows_pass[False]
+    assert "HAS_VARYING_EMITTERS" in made.features and made.shadows_pass["OPAQUE"]
 
 
 def test_planes_that_glow_are_named():

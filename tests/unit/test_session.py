@@ -6,7 +6,9 @@ import weakref
 import numpy as np
 
 from addon.engine import Camera, Geometry, Instances, Light, Material, Scene, Session, Settings, Spheres
+from addon.engine.expression import Parameter
 from addon.engine.material import surface_attribute
+from addon.engine.packing import pack
 
 
 class NoDevice:
@@ -90,5 +92,27 @@ def program_of(scene, **settings):
 def test_programs_hold_what_the_materials_ask_for():
     plain = program_of(scene_of())
     assert "cull_back_shadow > 0.5" not in plain and "attribute_value" not in plain
-    assert "cull_back_shadow > 0.5" in program_of(scene_of(cull_back_shadow=True), tinted_shadows=False)
+    assert "cull_back_shadow > 0.5" in program_of(scene_of(cull_back_shadow=True), shadows="OPAQUE")
     assert "attribute_value" in program_of(scene_of(glow=surface_attribute("id")))
+
+
+def test_shadow_rays_look_at_surfaces_only_where_one_may_let_them_pass():
+    """By structure, so that a parameter that is 0 now compiles nothing anew; it costs nothing meanwhile."""
+    glass, clear = {"transmit": 0.9, "ior": 1.5}, {"transmit": 0.9, "ior": 1.0}
+    faded = {"transmit": Parameter((0.0, 0.0, 0.0)), "ior": Parameter(1.0)}
+    looks = {
+        ("OPAQUE", "glass"): False,
+        ("OPAQUE", "clear"): False,
+        ("OPAQUE", "faded"): False,
+        ("TRANSPARENT", "glass"): False,
+        ("TRANSPARENT", "clear"): True,
+        ("TRANSPARENT", "faded"): True,
+        ("TINTED", "glass"): True,
+        ("TINTED", "clear"): True,
+        ("TINTED", "faded"): True,
+    }
+    materials = {"glass": glass, "clear": clear, "faded": faded}
+    for (shadows, name), expected in looks.items():
+        scene = scene_of(**materials[name])
+        assert ("#define SHADOWS_PASS true" in program_of(scene, shadows=shadows)) == expected, (shadows, name)
+        assert pack(scene, 4096).shadows_pass[shadows] == (expected and name != "faded")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes that compute colors."""
+"""Nodes that compute colors, and those that take colors and vectors apart."""
 
 from ...engine.expression import (
     Parameter,
@@ -39,8 +39,8 @@ _BLEND_FUNCTIONS = {
     "VALUE": "color_blend_value",
     "COLOR": "color_blend_color",
 }
-#: By the mode of Separate and Combine Color: functions from and to RGB; none for RGB.
-_MODES = {"HSV": ("color_to_hsv", "color_from_hsv"), "HSL": ("color_to_hsl", "color_from_hsl")}
+#: By the mode of Separate and Combine Color, in which the names of older nodes end: functions from and to RGB.
+_CHANNELS = {"HSV": ("color_to_hsv", "color_from_hsv"), "HSL": ("color_to_hsl", "color_from_hsl")}
 
 
 def _blended(n, factor, a, b, clamps_result):
@@ -80,46 +80,22 @@ def rgb(n):
     return Parameter(tuple(n.source.output.default_value)[:3])
 
 
-def _separated(n, mode):
-    """The channels by the identifiers of the outputs."""
-    color = n.color(0)
-    channels = of(_MODES[mode][0], color) if mode in _MODES else color
+def _functions(n):
+    """What goes from RGB to the channels of a Separate or Combine node, and back; none for RGB and XYZ."""
+    return _CHANNELS.get(getattr(n.node, "mode", n.node.type[-3:]))
+
+
+@reads("SEPARATE_COLOR", "SEPRGB", "SEPHSV", "SEPXYZ")
+def separate(n):
+    functions, color = _functions(n), n.color(0)
+    channels = of(functions[0], color) if functions else color
     return {output.identifier: component(channels, i) for i, output in enumerate(n.node.outputs)}
 
 
-def _combined(n, mode):
-    channels = combine(*(n.number(i) for i in range(3)))
-    return of(_MODES[mode][1], channels) if mode in _MODES else channels
-
-
-@reads("SEPARATE_COLOR")
-def separate_color(n):
-    return _separated(n, n.node.mode)
-
-
-@reads("SEPRGB")
-def separate_rgb(n):
-    return _separated(n, "RGB")
-
-
-@reads("SEPHSV")
-def separate_hsv(n):
-    return _separated(n, "HSV")
-
-
-@reads("COMBINE_COLOR")
-def combine_color(n):
-    return _combined(n, n.node.mode)
-
-
-@reads("COMBRGB")
-def combine_rgb(n):
-    return _combined(n, "RGB")
-
-
-@reads("COMBHSV")
-def combine_hsv(n):
-    return _combined(n, "HSV")
+@reads("COMBINE_COLOR", "COMBRGB", "COMBHSV", "COMBXYZ")
+def combined(n):
+    functions, channels = _functions(n), combine(*(n.number(i) for i in range(3)))
+    return of(functions[1], channels) if functions else channels
 
 
 @reads("INVERT")

@@ -180,16 +180,6 @@ def map_range(n):
     return _limited(mapped, to_low, to_high) if n.node.clamp else mapped
 
 
-@reads("SEPXYZ")
-def separate_xyz(n):
-    return {name: component(n.vector(0), i) for i, name in enumerate("XYZ")}
-
-
-@reads("COMBXYZ")
-def combine_xyz(n):
-    return combine(*(n.number(i) for i in range(3)))
-
-
 def _turned(vector, angles, back=False):
     """A vector turned by Euler angles, or turned back."""
     x, y, z = (of(f"math_turned_{axis}", angles) for axis in "xyz")

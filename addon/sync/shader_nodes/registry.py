@@ -9,16 +9,22 @@ from ...engine.expression import AttributeNumber, Expression, Parameter, call, e
 ENTRIES = {}
 
 
-def reads(*types):
-    """Decorate the function that reads nodes of these types."""
+def readers_into(table):
+    """The decorator that enters a function into a table under the types of the nodes that it reads."""
 
-    def enter(function):
-        for node_type in types:
-            assert node_type not in ENTRIES, node_type
-            ENTRIES[node_type] = function
-        return function
+    def reads(*types):
+        def enter(function):
+            for node_type in types:
+                assert node_type not in table, node_type
+                table[node_type] = function
+            return function
 
-    return enter
+        return enter
+
+    return reads
+
+
+reads = readers_into(ENTRIES)
 
 
 @dataclass(frozen=True)

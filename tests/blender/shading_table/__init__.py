@@ -26,10 +26,10 @@ import bpy
 #: every fourth, since the shaders are the same and Cycles takes its time.
 WHOLE = bool(os.environ.get("CONIC_WHOLE_TABLE")) or (bpy.app.version >= (5, 2, 0) and not bpy.app.binary_path)
 #: Files of this folder, by subject.
-SUBJECTS = ("values", "trees", "textures", "images", "coordinates", "bsdfs", "lights", "worlds", "mirrored")
+SUBJECTS = ("values", "trees", "textures", "images", "coordinates", "bsdfs", "lights", "worlds", "mirrored", "shadows")
 
 
-def tested():
+def keys_to_test():
     """The keys of the cases that are tested here."""
     return list(cases())[:: 1 if WHOLE else 4]
 

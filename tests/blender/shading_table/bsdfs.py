@@ -31,11 +31,10 @@ def added(a, b):
     return Node("AddShader", feed=(a, b))
 
 
-def built(shader, light, ball=True, volume=None, shadows="TINTED"):
+def built(shader, light, ball=True, volume=None):
     """A tilted plane, and where light does not go through it a smooth ball, of a shader in a light."""
     camera = add_camera(lens=50.0)
     camera.location, camera.rotation_euler = (0.0, -8.0, 0.0), (np.pi / 2.0, 0.0, 0.0)
-    bpy.context.scene.conic.shadows = shadows
     made, tree, output = material()
     tree.links.new(shader.build(tree), output.inputs["Surface"])
     if volume:
@@ -82,9 +81,7 @@ _WORDS = {lamp: "lamp", area: "area light", lamp_behind: "lamp behind", gray_wor
 
 
 def _in(light, name, shader, ball=True, volume=None, few=0.15, **settings):
-    """A case. What refracts throws shadows in Cycles, what is transparent does not."""
-    shadows = "OPAQUE" if any(word in name for word in ("glass", "refraction", "transmission")) else "TINTED"
-    build = partial(built, shader, light, ball, volume, shadows)
+    build = partial(built, shader, light, ball, volume)
     return Scene(f"{name}, {_WORDS[light]}", build=build, few=few, **settings)
 
 

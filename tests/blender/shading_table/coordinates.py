@@ -15,7 +15,6 @@ _ON = ("plate", *_ROUND, "cube")
 _COORDINATES = ("Generated", "Normal", "UV", "Object", "Camera", "Window", "Reflection")
 #: A swatch has few pixels.
 _OLD_BUMP = "before Blender 4.5 a bump is the difference over a whole pixel, along directions of its own"
-_BENT = "diffuse surfaces too get a normal that mirrors what is seen off the surface, in Cycles only mirrors do"
 _PIECES = "strands are cones cut where they bend: in between values run with the length, in Cycles with the parameter"
 _STRETCHED = {"scale": (1.0, 0.6, 0.8)}
 
@@ -317,14 +316,11 @@ def _in_perspective(kind, output):
 def _lit_normals():
     bump = _bump(_wave((1.0, 0.3, 0.2), 12.0), Distance=0.05)
     told = Node("NormalMap", Color=(0.65, 0.4, 0.85, 1.0))
-    for name, shown, settings in (
-        ("bump", bump, {"few": 0.2}),
-        ("normal map", told, {"few": 0.25, "total": 0.06, "reason": _BENT}),
-    ):
+    for name, shown, few in (("bump", bump, 0.15), ("normal map", told, 0.1)):
         build = partial(_lit, "BsdfDiffuse", shown)
-        yield Scene(f"diffuse with a {name} under the sun", build=build, **settings)
-    glossy = partial(_lit, "BsdfGlossy", bump)
-    yield Scene("glossy with a bump under the sun", build=glossy, samples=64, few=0.2)
+        yield Scene(f"diffuse with a {name} under the sun", build=build, few=few)
+        glossy = partial(_lit, "BsdfGlossy", shown)
+        yield Scene(f"glossy with a {name} under the sun", build=glossy, samples=64, few=few)
 
 
 def _lit(kind, shown):

@@ -35,6 +35,26 @@ def opaque():
     return generated(alpha=False)
 
 
+def faint(alpha_mode, *, packed=False):
+    """Floats whose alpha is a tenth."""
+    values = pixels(False)
+    values[..., 3] = 0.1
+    made = image(values, float_buffer=True)
+    made.alpha_mode = alpha_mode
+    if packed:
+        made.pack()
+    return made
+
+
+def painted(name, file_format, mode):
+    """A file that was painted: it is half as bright."""
+    made = from_file(name, file_format, mode=mode)
+    values = np.array(made.pixels)
+    values.reshape(-1, 4)[:, :3] *= 0.5
+    made.pixels.foreach_set(values.astype(np.float32))
+    return made
+
+
 def picture(make=opaque, output="Color", also=False, kind="TexImage", vector=PLACE, **settings):
     """A node with an image; `also`: its alpha is used too, and taken from the color."""
 
@@ -192,6 +212,41 @@ CASES = [
         for blend, shape in ((0.0, "cube"), (0.0, "sphere"), (0.3, "sphere"), (1.0, "sphere"), (0.5, "cylinder"))
     ),
     Swatch("environment", shown=picture(kind="TexEnvironment", vector=ROUND)),
+    *(
+        Swatch(
+            f"{name} of faint floats {mode.lower()}{' packed' * packed}{' with alpha' * also}",
+            shown=picture(partial(faint, mode, packed=packed), kind=kind, vector=ROUND, also=also),
+        )
+        for name, kind in (("image", "TexImage"), ("environment", "TexEnvironment"))
+        for mode in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE")
+        for packed in (False, True)
+        for also in ((False, True) if kind == "TexImage" else (False,))
+    ),
+    *(
+        Swatch(
+            f"image {kind} painted {mode.lower()}",
+            shown=picture(partial(painted, f"k.{kind}", file_format, mode)),
+            since=(5, 2),  # before, Cycles reads the file
+        )
+        for kind, file_format in (("exr", "OPEN_EXR"), ("png", "PNG"))
+        for mode in ("STRAIGHT", "CHANNEL_PACKED", "NONE")  # of PREMUL, Cycles multiplies bytes twice
+    ),
+    *(
+        Swatch(
+            f"environment OpenEXR {mode.lower()}",
+            shown=picture(partial(from_file, "j.exr", "OPEN_EXR", mode=mode), kind="TexEnvironment", vector=ROUND),
+            since=(5, 0) if mode == "STRAIGHT" else (),  # before, Cycles does not multiply by alpha, and Blender does
+        )
+        for mode in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE")
+    ),
+    *(
+        Swatch(
+            f"environment PNG {mode.lower()}",
+            shown=picture(partial(from_file, f"{mode}.png", mode=mode), kind="TexEnvironment", vector=ROUND),
+            since=(5, 2) if mode == "PREMUL" else (),  # before, Cycles multiplies by alpha twice
+        )
+        for mode in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE")
+    ),
     Swatch("environment cubic", shown=picture(kind="TexEnvironment", vector=ROUND, interpolation="Cubic")),
     Swatch("environment by position", shown=picture(kind="TexEnvironment", vector=None), on="sphere"),
     Swatch("environment mirror ball", shown=picture(kind="TexEnvironment", vector=ROUND, projection="MIRROR_BALL")),

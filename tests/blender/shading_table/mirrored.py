@@ -38,7 +38,6 @@ def _ground_and_glass(shader, ball=(0.6, -1.0, 1.4)):
 
 def _lamp(shader, kind, hidden_from=(), of_object=None, **settings):
     _ground_and_glass(shader)
-    bpy.context.scene.conic.shadows = "OPAQUE"
     data = bpy.data.lights.new("lamp", kind)
     for name, value in ({"energy": 60.0, "color": (1.0, 0.8, 0.5)} | settings).items():
         setattr(data, name, value)

@@ -1,6 +1,8 @@
 """How nodes are put together: groups, muted nodes and links, reroutes, links between sockets of other types, several
 images in a material, several materials on an object."""
 
+from itertools import product
+
 import bpy
 
 from tests.blender.building import add_camera, material, node
@@ -47,6 +49,20 @@ def _of_group(*feed, shown=None, nested=False):
     def build(tree, socket):
         inner = _group("inner", shown=Node("TexChecker", "Color", Vector=PLACE)) if nested else None
         tree.links.new(_used(tree, _group("group", shown, inner), *feed), socket)
+
+    return build
+
+
+def _converting(kind, to, shown):
+    """What a group makes of a Node that hands a socket of type `kind` on to one of type `to`."""
+
+    def build(tree, socket):
+        group = bpy.data.node_groups.new("group", "ShaderNodeTree")
+        group.interface.new_socket("in", in_out="INPUT", socket_type=f"NodeSocket{kind}")
+        group.interface.new_socket("out", in_out="OUTPUT", socket_type=f"NodeSocket{to}")
+        given, taken = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+        group.links.new(given.outputs[0], taken.inputs[0])
+        tree.links.new(_used(tree, group, shown), socket)
 
     return build
 
@@ -175,23 +191,32 @@ def _two_outputs():
     add_camera(lens=80.0)
 
 
+_MADE = {"number": Node("Math", operation="MULTIPLY", feed=(K, 3.3)), "color": _COLOR, "vector": _VECTOR}
+#: What a group is given, the types of sockets it goes through, and the name of the case.
+_CONVERTED = {
+    f"{name} as {kind} as {to} by a group": _converting(kind, to, shown)
+    for (name, shown), kind, to in product(_MADE.items(), ("Float", "Int", "Color", "Vector"), ("Float", "Color"))
+}
+
 _BLACK = {"constant": True, "black": True}
-_OF_OLD = {"tolerance": 1.0, "few": 1.0, "reason": "a vector that a muted node hands on as a number stays a vector"}
 
 CASES = [
     Swatch("group", _of_group(A, K)),
     Swatch("group of its own values", _of_group(A, shown=PLACE)),
     Swatch("group in a group", _of_group(A, K, nested=True)),
     Swatch("group twice", _of_group_twice),
+    *(Swatch(name, shown) for name, shown in _CONVERTED.items()),
     Swatch("group with an image", _of_group(A, K, shown=Node("TexChecker", "Color", Vector=PLACE))),
     Swatch("muted math", _muted("Math", feed=(K, L))),
     Swatch("muted vector math", _muted("VectorMath", operation="CROSS_PRODUCT", feed=(A, B))),
     Swatch("muted mix", _muted("Mix", data_type="RGBA", feed=(K, A, B))),
     Swatch("muted ramp", _muted("ValToRGB", Fac=K), constant=True),
     Swatch("muted texture", _muted("TexNoise", "Color", Vector=PLACE), **_BLACK),
-    Swatch(
-        "muted separation", _muted("SeparateXYZ", "Y", feed=(A,)), **_OF_OLD if bpy.app.version < (5, 0, 0) else _BLACK
-    ),
+    Swatch("muted separation", _muted("SeparateXYZ", "Y", feed=(A,))),
+    Swatch("muted number of a color", _muted("Math", feed=(_COLOR, K))),
+    Swatch("muted alpha of a ramp", _muted("ValToRGB", "Alpha", Fac=_COLOR)),
+    Swatch("muted length", _muted("VectorMath", "Value", operation="LENGTH", feed=(_VECTOR, B))),
+    Swatch("muted math of a number of its own", _muted("Math", feed=(0.3, 0.4)), **_BLACK),
     Swatch("muted group", _of_muted_group),
     Swatch("muted link", _by_muted_link),
     Swatch("reroutes", _rerouted(_COLOR, "Color", "Color")),
