@@ -15,7 +15,7 @@ from addon.sync.scene_sync import sync_settings
 from tests.blender.building import add_camera, link, material, node, sync
 from tests.blender.pictures import picture
 from tests.blender.test_sync_points import cloud
-from tests.blender.test_viewport import View
+from tests.blender.viewport_stand_in import StandIn
 
 WIDTH, HEIGHT = 96, 72
 
@@ -86,7 +86,7 @@ def test_the_viewport_draws_outlines():
     bpy.ops.conic.sphere_add()
     conic = bpy.context.scene.conic
     conic.preview_samples, conic.use_outlines, conic.outline_color = 2, True, (1.0, 0.0, 0.0, 1.0)
-    view = View()
+    view = StandIn()
     try:
         pixels = view.settle()
     finally:
