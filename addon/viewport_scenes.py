@@ -23,6 +23,7 @@ _SHOWN_TYPES = sorted(
     name for name in bpy.types.SpaceView3D.bl_rna.properties.keys() if name.startswith("show_object_viewport_")
 )
 _scenes = weakref.WeakValueDictionary()  # by `ViewportScene.key`
+_replacing = False  # whether Blender is just replacing its data, by an undo or a file
 
 
 class ViewportScene:
@@ -153,7 +154,12 @@ def scene_of(space, depsgraph, before=None):
 
 
 def mark(depsgraph):
-    """Blender says that something changed in a depsgraph: call it in each `view_update`."""
+    """Blender says that something changed in a depsgraph: call it in each `view_update`.
+
+    While Blender replaces its data what it says is not looked at: it may refer to what is freed already.
+    """
+    if _replacing:
+        return
     owner = _owner(depsgraph)
     for key, scene in list(_scenes.items()):
         if key[0] == owner:
@@ -184,34 +190,49 @@ def _watch_jobs():
 
 
 def _look():
-    """Called by a timer; seconds until the next look, None for none."""
-    waiting = [scene for scene in _scenes.values() if scene.preparing]
-    for scene in waiting:
-        if scene.prepared:
-            scene.tag_redraw()
-    return _LOOK_SECONDS if waiting else None
+    """Called by a timer; seconds until the next look, None for none. What has been prepared is told once: a viewport
+    that pauses does not take it."""
+    preparing = [scene for scene in _scenes.values() if scene.preparing]
+    prepared = [scene for scene in preparing if scene.prepared]
+    for scene in prepared:
+        scene.tag_redraw()
+    return _LOOK_SECONDS if len(prepared) < len(preparing) else None
 
 
 # Blender's handlers
 
 
 @bpy.app.handlers.persistent
-def _forget(*_arguments):
+def _begin_replacing(*_arguments):
     """Undo, redo and opening a file replace any data."""
+    global _replacing
+    _replacing = True
+
+
+@bpy.app.handlers.persistent
+def _end_replacing(*_arguments):
+    """Nothing is as it was."""
+    global _replacing
+    _replacing = False
     for scene in list(_scenes.values()):
         scene.forget()
 
 
-_HANDLERS = ("undo_post", "redo_post", "load_post")
+def _handlers():
+    """(list of Blender's, function) of each handler."""
+    for name in ("undo_pre", "redo_pre", "load_pre"):
+        yield getattr(bpy.app.handlers, name), _begin_replacing
+    for name in ("undo_post", "redo_post", "load_post", "load_post_fail"):
+        yield getattr(bpy.app.handlers, name), _end_replacing
 
 
 def register():
-    for name in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(_forget)
+    for handlers, function in _handlers():
+        handlers.append(function)
 
 
 def unregister():
-    for name in _HANDLERS:
-        getattr(bpy.app.handlers, name).remove(_forget)
+    for handlers, function in _handlers():
+        handlers.remove(function)
     if bpy.app.timers.is_registered(_look):
         bpy.app.timers.unregister(_look)

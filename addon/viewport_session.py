@@ -58,6 +58,7 @@ class ViewportSession:
                 self._log(began, time.perf_counter() - started)
         except Exception as error:  # a view that raises would do so at every redraw
             self.error = self.scene.explain(error)
+            self.picture = None  # it may have ended half way: the next redraw begins anew
         self._tell(settings.preview_pause, time.perf_counter() - started)
 
     def _others(self):

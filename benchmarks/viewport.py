@@ -15,8 +15,8 @@ window itself. Printed are the medians of seconds from the action to
     sharp   every pixel: its differences to its neighbours correlate with the last picture's by more than 0.4
     done    all samples
 
-with the least and the most, and the medians divided by Conic's. The first round, which compiles shaders or loads them
-from the driver's cache, stands apart as "cold".
+with the least and the most, and the medians divided by Conic's. "-": it took more than two minutes, and the engine was
+left out from there on. The first round, which compiles shaders or loads them from the driver's cache, is "cold".
 
 Not equal: Cycles traces paths on the processor with four diffuse bounces, denoising and adaptive sampling off; EEVEE
 rasterises, without ray tracing, and shows a point cloud's spheres as a few triangles each; Conic traces exact spheres,
@@ -66,8 +66,8 @@ def in_application(options, folder):
 
 
 def column(lines, milestone, **wanted):
-    """The seconds to a milestone in the lines that are as wanted; not reached counts as never."""
-    return [line.get(milestone) for line in lines if all(line[key] == value for key, value in wanted.items())]
+    """The seconds to a milestone in the lines that are as wanted."""
+    return [line[milestone] for line in lines if all(line[key] == value for key, value in wanted.items())]
 
 
 def print_tables(lines, options):
@@ -83,12 +83,12 @@ def print_tables(lines, options):
             for engine in options.engines:
                 key = {"scene": scene, "action": action, "engine": engine}
                 columns = {name: column(warm, name, **key) for name in MILESTONES}
-                cold = column(lines, "seen", **key, round=0)[0]
+                cold = column(lines, "seen", **key, round=0)[:1]
                 medians[engine] = {name: statistics.median(values) for name, values in columns.items() if values}
                 cells = "".join(f"{_cell(values):>21}" for values in columns.values())
-                print(f"{scene:12}{action:8}{engine:15}{cells}{cold:11.2f}")
+                print(f"{scene:12}{action:8}{engine:15}{cells}{_cell(cold).split(' ')[0]:>11}")
             for engine, of_engine in medians.items():
-                if engine != "CONIC" and "CONIC" in medians:
+                if engine != "CONIC" and of_engine and medians.get("CONIC"):
                     ratios = {name: of_engine[name] / medians["CONIC"][name] for name in of_engine}
                     cells = "".join(f"{f'{ratio:.2f}':>21}" for ratio in ratios.values())
                     print(f"{scene:12}{action:8}{engine[:9] + '/CONIC':15}{cells}")

@@ -141,8 +141,7 @@ class LoadedScene:
         not while `apply` works on another update. It may be dropped."""
         if settings.outlines and settings.outlines.around == "ATTRIBUTE" and not scene.outline_attribute:
             raise SceneError("outlines go around the values of an attribute, but the scene does not say of which")
-        before = self.drawn
-        residency = before.packed.residency if before else None
+        residency = self.drawn.packed.residency if self.drawn else None
         packed = pack(scene, self.device.max_texture_size, residency, keep=self.lasting)
         digest = world_digest(packed) if settings.world_light != "NONE" else b""
         return Update(
@@ -254,9 +253,11 @@ class LoadedScene:
         return {name: 16 * room for name, room in self.drawn.rooms.items()} if self.drawn else {}
 
     def free(self):
-        """Give back the textures; programs stay with the device."""
+        """Give back the textures, here and now: the thread of a `prepare` that nobody waits for does not keep them.
+        Programs stay with the device."""
         if self.drawn:
-            self._release(list(self.drawn.textures.values()))
+            textures, self.drawn.textures = self.drawn.textures, {}
+            self._release(list(textures.values()))
         self.drawn = None
 
     def _release(self, textures):

@@ -42,7 +42,7 @@ class Changes:
 
     def _mark(self, update):
         owner = update.id.original
-        uid = original_key(owner)
+        uid = owner.session_uid
         self.tokens.add(uid)
         if update.is_updated_geometry:
             self.tokens.add(geometry_of(uid))

@@ -113,7 +113,8 @@ class SceneReader:
         frame = depsgraph.scene_eval.frame_current
         if frame != self._frame:
             tokens.add(FRAME)
-        tokens |= changed_images(self._states, image_states(self._states))
+        before, self._states = self._states, image_states(self._states)
+        tokens |= changed_images(before, self._states)
         graph = original_key(depsgraph.scene), depsgraph.view_layer.name, depsgraph.mode
         self._memory.begin(reports, tokens, changes.everything or graph != self._graph)
         self._frame, self._graph = frame, graph
@@ -151,8 +152,8 @@ class SceneReader:
         _settle_replacements(scene)
         self._memory.end()
         images.finish()
-        known = {*self._states, *images.keys}
-        self._states = image_states(key for key in known if self._memory.last(("image", *key)) is not None)
+        states = self._states | image_states(images.keys)  # to look is slow where they are packed or on a network
+        self._states = {key: state for key, state in states.items() if self._memory.last(("image", *key)) is not None}
         scene.materials, scene.images = list(self._materials), list(self._images)
         used = sum(self._memory.last(key) is not None for key in self._material_numbers)
         if len(self._materials) > 2 * used + _SPARE_MATERIALS:

@@ -3,9 +3,10 @@
 
 blender --factory-startup --python tests/app/in_memory.py -- FOLDER EDITS FRAMES
 
-Writes FOLDER/memory.json: {"edits": {"SOLID": [KiB, ...], "RENDERED": [...]}, "frames": {...}}, the process's resident
-memory after each edit and each frame, first in Solid view, which is Blender's own share. With a software rasteriser it
-holds what is on the GPU too. {"error": text} if it failed.
+Writes FOLDER/memory.json: {"edits": {"SOLID": [KiB, ...], "RENDERED": [...]}, "frames": {...},
+"loads": number}: the process's resident memory after each edit and each frame, first in Solid view, which is Blender's
+own share, and how often the rendered view has loaded something. With a software rasteriser the memory holds what is on
+the GPU too. {"error": text} if it failed.
 """
 
 import json
@@ -20,6 +21,7 @@ from mathutils import Quaternion
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import addon
+from addon import viewport_log
 from addon.operators.nff_shapes import new_point_cloud
 from tests.app.live_view import Screen, fill_window, run_in_window, view_parts
 
@@ -32,6 +34,7 @@ DRAWS = 2  # redraws an edit: one reads the scene, one shows it
 MOST = 60.0  # seconds for them
 
 screen = Screen()
+loads = []  # records of what the rendered view loaded
 
 
 def resident():
@@ -97,15 +100,15 @@ def hide(count):
 
 
 def add_or_delete(count):
-    """Another monkey, or one less."""
-    known = bpy.data.objects.get("Monkey")
+    """Another mesh, or one less."""
+    known = bpy.data.objects.get("Copy")
     if known:
         mesh = known.data
         bpy.data.objects.remove(known)
         bpy.data.meshes.remove(mesh)
         return
     mesh = bpy.data.objects["Grid"].data.copy()
-    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Monkey", mesh))
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Copy", mesh))
 
 
 def turn(count):
@@ -132,6 +135,8 @@ def drawn(times=DRAWS):
             if time.monotonic() - start > MOST:
                 raise TimeoutError("the window is not drawn")
             yield
+    loads.extend(record for record in viewport_log.records if getattr(record, "change", None))
+    viewport_log.records.clear()
 
 
 def edits():
@@ -167,7 +172,7 @@ def steps():
         yield from screen.rest(1.0, MOST)
         found["edits"][kind] = yield from edits()
         found["frames"][kind] = yield from playback()
-    tell(found)
+    tell(found | {"loads": len(loads)})
 
 
 def tell(found):

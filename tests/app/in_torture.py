@@ -75,6 +75,8 @@ def check(step):
     yield from until_rendered()
     bpy.context.scene.render.engine = "CONIC"
     keep_settings()
+    if step // BETWEEN_CHECKS % 2:  # all of the scene; else what the edits have led to
+        look_from_afar()
     yield
     before = yield from picture()
     for space in spaces():
@@ -143,7 +145,11 @@ def look_at_all():
     for name in dir(space):
         if name.startswith("show_object_viewport_"):
             setattr(space, name, True)
-    view = space.region_3d
+    look_from_afar()
+
+
+def look_from_afar():
+    view = view_parts()["area"].spaces.active.region_3d
     view.view_perspective, view.view_location, view.view_distance = "PERSP", (0.0, 0.0, 0.0), 12.0
     view.view_rotation = Quaternion((0.83, 0.43, 0.16, 0.32))
 

@@ -59,6 +59,10 @@ def growth(kilobytes):
     return (statistics.median(last) - statistics.median(second)) / (2 * quarter)
 
 
+def test_the_view_took_part(memory):
+    assert memory["loads"] > 0.6 * sum(COUNTS.values()), "what is edited is loaded, most of it by itself"
+
+
 @pytest.mark.parametrize("what", COUNTS)
 def test_memory_is_flat(memory, what):
     solid, rendered = (growth(memory[what][kind]) for kind in ("SOLID", "RENDERED"))

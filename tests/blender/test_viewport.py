@@ -2,6 +2,7 @@
 
 import gc
 import threading
+import time
 import weakref
 
 import bpy
@@ -10,8 +11,9 @@ import numpy as np
 import pytest
 
 from addon import viewport_log, viewport_scenes, viewport_session
-from addon.engine import LoadedScene, SceneError
+from addon.engine import DeviceError, LoadedScene, SceneError, loaded_scene
 from addon.engine.devices.blender_gpu import BlenderDevice
+from addon.engine.packing import pack
 from addon.sync.scene_reader import SceneReader
 from addon.viewport_picture import STEPS
 from tests.blender.viewport_stand_in import HEIGHT, WIDTH, StandIn, draws, loads, mark
@@ -356,6 +358,42 @@ def test_a_viewport_may_close_while_its_scene_is_prepared(view, monkeypatch):
     assert not viewport_scenes._scenes
 
 
+def test_a_viewport_that_pauses_hears_once_of_what_has_been_prepared(view, monkeypatch):
+    view.settle()
+    gate = Gate(monkeypatch)
+    bpy.context.object.location.x = 1.0
+    view.redraw()
+    bpy.context.scene.conic.preview_pause = True
+    assert viewport_scenes._look() is not None
+    gate.opened.set()
+    while not view.session.scene.prepared:
+        time.sleep(0.001)
+    before = view.engine.redraws
+    assert viewport_scenes._look() is None and view.engine.redraws == before + 1
+    bpy.context.scene.conic.preview_pause = False
+    assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 + WIDTH / 6, abs=0.5)
+
+
+def test_what_is_prepared_for_nobody_keeps_nothing_on_the_gpu(view, monkeypatch):
+    """Its thread must not be the one that frees textures."""
+    view.settle()
+    began, gate = threading.Event(), threading.Event()
+
+    def wait(*arguments, **settings):
+        began.set()
+        assert gate.wait(60.0)
+        return pack(*arguments, **settings)
+
+    monkeypatch.setattr(loaded_scene, "pack", wait)
+    bpy.context.object.location.x = 1.0
+    view.redraw()
+    assert began.wait(60.0)
+    drawn = weakref.ref(view.session.scene.loaded.drawn)
+    view.close()
+    assert drawn() is None
+    gate.set()
+
+
 def test_undo_and_new_files_read_anew(view, monkeypatch):
     forgotten = []
     monkeypatch.setattr(SceneReader, "forget", lambda self: forgotten.append(self))
@@ -425,6 +463,19 @@ def test_a_defect_is_shown_and_its_traceback_logged_once(view, monkeypatch, capl
     assert len(traces) == (0 if isinstance(error, MemoryError) else 1)
     bpy.context.object.location.x = 0.0
     assert sphere_at(view.settle())[1] > 0
+
+
+def test_a_picture_that_there_is_no_memory_for_is_tried_again(view, monkeypatch):
+    def refuse(*_arguments):
+        raise DeviceError("no memory for a picture")
+
+    view.settle()
+    with monkeypatch.context() as patched:
+        patched.setattr(BlenderDevice, "target", refuse)
+        view.look_from(1.0)
+        for _ in range(2):
+            assert not view.redraw() and view.engine.text == "no memory for a picture"
+    assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 - WIDTH / 6, abs=0.5)
 
 
 def test_the_count_of_warnings_is_that_of_the_scene_as_it_is(view, caplog):
