@@ -227,6 +227,8 @@ def _handlers():
 
 
 def register():
+    global _replacing
+    _replacing = False  # where factory settings disabled the add-on, nobody has told it of the end
     for handlers, function in _handlers():
         handlers.append(function)
 

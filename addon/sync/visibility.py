@@ -69,7 +69,7 @@ def shown_in(space):
     if space is None:
         return lambda obj: True
     is_local = space.local_view is not None
-    return lambda obj: (is_local and obj.type == "LIGHT") or obj.original.visible_in_viewport_get(space)
+    return lambda obj: (is_local and obj.type == "LIGHT") or obj.visible_in_viewport_get(space)
 
 
 def shows_hair(obj):

@@ -145,3 +145,34 @@ def test_sync_takes_a_viewport():
     space.show_object_viewport_mesh = False
     numbers = [len(sync_scene(depsgraph, 8, 8, report=print, space=of).instances) for of in (None, space)]
     assert numbers == [1, 0]
+
+
+def shown(view_layer, space):
+    """The names of the meshes that a viewport shows of a view layer."""
+    return {obj.name for obj in view_layer.depsgraph.objects if obj.type == "MESH" and shown_in(space)(obj)}
+
+
+def test_a_viewport_shows_its_local_collections():
+    quad("outside")
+    collection = bpy.data.collections.new("collection")
+    bpy.context.scene.collection.children.link(collection)
+    collection.objects.link(bpy.data.objects.new("inside", bpy.data.objects["outside"].data))
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    space = area.spaces.active
+    with bpy.context.temp_override(window=window, area=area):
+        space.use_local_collections = True
+        bpy.context.view_layer.update()
+        assert shown(bpy.context.view_layer, space) == {"outside", "inside"}
+        bpy.ops.object.hide_collection(collection_index=1, extend=True)
+        bpy.context.view_layer.update()
+        assert shown(bpy.context.view_layer, space) == {"outside"}
+
+
+def test_what_another_view_layer_hides_is_shown():
+    obj, layers, space = quad("quad"), bpy.context.scene.view_layers, viewport()
+    other = layers.new("other")
+    obj.hide_set(True, view_layer=other)
+    for layer in (layers[0], other):
+        layer.update()
+    assert [shown(layer, space) for layer in (layers[0], other)] == [{"quad"}, set()]

@@ -407,6 +407,18 @@ def test_undo_and_new_files_read_anew(view, monkeypatch):
     assert len(loads()) == 1, "it was the same"
 
 
+def test_an_add_on_that_was_disabled_by_a_file_hears_of_changes_when_it_is_enabled(view):
+    """As by Load Factory Settings, which takes its handlers away in between."""
+    view.settle()
+    for handler in list(bpy.app.handlers.load_pre):
+        if handler.__module__ == viewport_scenes.__name__:
+            handler("", None)
+    viewport_scenes.unregister()
+    viewport_scenes.register()
+    bpy.context.object.location.x = 1.0
+    assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 + WIDTH / 6, abs=0.5)
+
+
 def test_statistics_are_published_once_for_what_is_loaded(view, monkeypatch):
     published = []
     monkeypatch.setattr(viewport_session, "publish", published.append)
