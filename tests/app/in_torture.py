@@ -23,7 +23,7 @@ from mathutils import Quaternion
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import addon
 from tests.app.live_view import Screen, fill_window, point_at_view, run_in_window, view_parts
-from tests.app.torture_edits import NOT_WHILE_RENDERING, Edits, operate, spaces, start_scene
+from tests.app.torture_edits import Edits, operate, spaces, start_scene
 
 sys.dont_write_bytecode = True
 FOLDER, WHAT, *REST_OF_ARGUMENTS = sys.argv[sys.argv.index("--") + 1 :]
@@ -34,7 +34,6 @@ MOST = 120.0  # seconds until it must be
 BETWEEN_CHECKS = 25  # steps
 DIFFERENT = 12  # of 255: a pixel that differs by more is another one
 ALLOWED = 0.002  # part of the pixels: edges that tie
-ENDLESS = 60.0  # seconds for a render of a small picture
 
 screen = Screen()
 wrong = []
@@ -62,17 +61,8 @@ def picture():
     return (yield from screen.picture())
 
 
-def until_rendered():
-    start = time.monotonic()
-    while bpy.app.is_job_running("RENDER"):
-        if time.monotonic() - start > ENDLESS:
-            raise TimeoutError("a render of 160 x 90 pixels did not end")
-        yield
-
-
 def check(step):
     """The picture is the one that the same scene has when every viewport has begun anew."""
-    yield from until_rendered()
     bpy.context.scene.render.engine = "CONIC"
     keep_settings()
     if step // BETWEEN_CHECKS % 2:  # all of the scene; else what the edits have led to
@@ -98,14 +88,12 @@ def check(step):
 def make(edits, step):
     """One edit; yields while it waits."""
     chosen = edits.choose()
-    if bpy.app.is_job_running("RENDER") and chosen in NOT_WHILE_RENDERING:
-        yield from until_rendered()
     log(step=step, edit=chosen.__name__)
     done = chosen(edits)
     if isgenerator(done):
         done = yield from done
     log(step=step, edit=chosen.__name__, done=str(done))
-    if chosen.__name__ != "undo" and not bpy.app.is_job_running("RENDER"):
+    if chosen.__name__ != "undo":
         operate(bpy.ops.ed.undo_push, message=chosen.__name__)
     if bpy.context.mode != "OBJECT":  # an undo may lead back into another mode
         operate(bpy.ops.object.mode_set, mode="OBJECT")
