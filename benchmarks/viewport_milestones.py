@@ -48,8 +48,9 @@ def _done(shown, last):
 
 
 def has_changed(before, now):
-    """Whether a thousandth of the pixels of two pictures (h, w, 3) uint8 differ."""
-    return bool((np.abs(_gray(now) - _gray(before)) > DIFFERENCE).mean() > 1e-3)
+    """Whether a thousandth of the pixels of two pictures (h, w, 3) uint8 differ, and `now` is not blank."""
+    before, now = _gray(before), _gray(now)
+    return bool((np.abs(now - before) > DIFFERENCE).mean() > 1e-3 and now.std() > DIFFERENCE)
 
 
 def _gray(picture):

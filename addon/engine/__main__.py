@@ -9,7 +9,9 @@ and no file either.
 import argparse
 import json
 import os
+import signal
 import sys
+import threading
 import time
 from contextlib import ExitStack
 from dataclasses import replace
@@ -28,9 +30,21 @@ LARGEST_DEPTH = 1024
 _STEP = 0.1  # seconds between two updates of the progress bar
 
 
+_interrupted = threading.Event()
+
+
+def _interrupt(_signal, _frame):
+    """Ctrl-C. Python loses an exception that is raised while it frees something, so the render looks at the event."""
+    _interrupted.set()
+    raise KeyboardInterrupt
+
+
 def main(arguments=None):
     """Run the command line; the exit code."""
     progress = Progress(sys.stderr)
+    _interrupted.clear()
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, _interrupt)
     try:
         _run(_parse(arguments), progress)
     except NffError as error:  # begins with the file and the line
@@ -163,6 +177,8 @@ def _render(file, settings, progress):
         session.load(file.scene, settings)
         session.start(file.width, file.height)
         while session.step(_STEP):
+            if _interrupted.is_set():
+                raise KeyboardInterrupt
             progress.show(session.progress)
         return session.pixels(), session.statistics(), list(session.warnings)
     finally:

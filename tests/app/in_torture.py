@@ -23,7 +23,7 @@ from mathutils import Quaternion
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import addon
 from tests.app.live_view import Screen, fill_window, point_at_view, run_in_window, view_parts
-from tests.app.torture_edits import Edits, operate, spaces, start_scene
+from tests.app.torture_edits import FORGETTING, Edits, operate, spaces, start_scene
 
 sys.dont_write_bytecode = True
 FOLDER, WHAT, *REST_OF_ARGUMENTS = sys.argv[sys.argv.index("--") + 1 :]
@@ -31,7 +31,8 @@ FOLDER = Path(FOLDER)
 TICK = 0.03  # seconds
 REST = 0.7  # seconds without a redraw: the picture is done
 MOST = 120.0  # seconds until it must be
-BETWEEN_CHECKS = 25  # steps
+BETWEEN_CHECKS = 25  # steps at most
+WORTH_A_CHECK = 4  # steps, before something that makes the view begin anew anyway, so that nothing stale gets away
 DIFFERENT = 12  # of 255: a pixel that differs by more is another one
 ALLOWED = 0.002  # part of the pixels: edges that tie
 
@@ -65,7 +66,7 @@ def check(step):
     """The picture is the one that the same scene has when every viewport has begun anew."""
     bpy.context.scene.render.engine = "CONIC"
     keep_settings()
-    if step // BETWEEN_CHECKS % 2:  # all of the scene; else what the edits have led to
+    if step % 2:  # all of the scene; else what the edits have led to
         look_from_afar()
     yield
     before = yield from picture()
@@ -85,9 +86,8 @@ def check(step):
         np.savez_compressed(FOLDER / f"check-{step}.npz", before=before, after=after)
 
 
-def make(edits, step):
+def make(edits, chosen, step):
     """One edit; yields while it waits."""
-    chosen = edits.choose()
     log(step=step, edit=chosen.__name__)
     done = chosen(edits)
     if isgenerator(done):
@@ -105,16 +105,18 @@ def torture(seed, seconds, steps):
     yield
     start_scene()
     keep_settings()
-    edits, start, step = Edits(seed, FOLDER), time.monotonic(), 0
+    edits, start, step, checked = Edits(seed, FOLDER), time.monotonic(), 0, 0
     yield from check(0)
     while step < steps if steps else time.monotonic() - start < seconds:
+        chosen = edits.choose()
+        if step - checked >= (WORTH_A_CHECK if chosen in FORGETTING else BETWEEN_CHECKS):
+            checked = step
+            yield from check(step)
         step += 1
-        yield from make(edits, step)
+        yield from make(edits, chosen, step)
         keep_engine(edits)
         for _ in range(edits.random.choice([0, 0, 1, 3])):
             yield
-        if step % BETWEEN_CHECKS == 0:
-            yield from check(step)
     yield from check(step)
     yield from finish(step)
 

@@ -9,6 +9,7 @@ import gpu
 import numpy as np
 
 LOST = 4.0  # seconds without a picture: opening a file with its window has taken the cursor's drawing away
+IDLE_TURNS = 6  # of the main loop without a redraw: one that shows a picture may take longer than any time of rest
 UNSEEN = 60.0  # seconds without a picture: none will come
 
 
@@ -35,8 +36,9 @@ class Screen:
 
     def rest(self, seconds, most, until=lambda: True):
         """Wait until nothing was drawn for `seconds` and `until()` holds, for `most` seconds; yields while it waits."""
-        start = time.monotonic()
-        while time.monotonic() - max(self.drawn, start) < seconds or not until():
+        start, drawn, turns = time.monotonic(), None, 0
+        while turns < IDLE_TURNS or time.monotonic() - max(self.drawn, start) < seconds or not until():
+            turns, drawn = (turns + 1 if drawn == self.drawn else 0), self.drawn
             if time.monotonic() - start > most:
                 raise TimeoutError(f"the viewport did not come to rest in {most:g} s")
             yield

@@ -631,6 +631,10 @@ def disable_and_enable(edits):
     return "the add-on"
 
 
+#: After these a view begins anew: a stale picture would be gone.
+FORGETTING = {shading, engine, undo, open_file, disable_and_enable}
+
+
 def start_scene():
     """Some of everything, lit."""
     scene = bpy.context.scene

@@ -46,3 +46,4 @@ def test_it_is_done_when_it_stays():
 def test_noise_is_no_change():
     assert has_changed(BEFORE, LAST)
     assert not has_changed(LAST, disc(80, noise=1.0))
+    assert not has_changed(BEFORE, np.full_like(BEFORE, 90)), "blank: the new picture is still to come"
