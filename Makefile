@@ -22,6 +22,9 @@ test-all: $(BLENDERS:%=test-bpy-%)  ## run the tests in Blender as a module, in 
 test-app: .venv/.ready  ## run the tests in the real Blender application, OpenGL and Vulkan
 	tools/run_app_tests
 
+torture: .venv/.ready  ## edit at random in the real application's rendered viewport for five minutes
+	CONIC_TORTURE_SECONDS=300 tools/run_app_tests opengl -- tests/app/test_torture.py -q
+
 lint: .venv/.ready  ## check the Python code's style
 	$(PYTHON) -m ruff check .
 	$(PYTHON) -m ruff format --check .
@@ -48,4 +51,4 @@ $(BLENDERS:%=.venvs/bpy-%/.ready): .venvs/bpy-%/.ready: pyproject.toml tools/set
 .venvs/molecules/.ready: pyproject.toml tools/setup
 	@tools/setup molecules
 
-.PHONY: help render molecules test test-all test-app lint zip bench clean $(BLENDERS:%=test-bpy-%)
+.PHONY: help render molecules test test-all test-app torture lint zip bench clean $(BLENDERS:%=test-bpy-%)
