@@ -2,6 +2,7 @@
 Its pictures stay in build/app-viewport."""
 
 import shutil
+import sys
 
 import numpy as np
 import pytest
@@ -259,6 +260,8 @@ def test_f12_beside_the_viewport(rested, tmp_path):
 
 @pytest.mark.parametrize("engine", ["BLENDER_EEVEE", "BLENDER_WORKBENCH"])
 def test_another_engine_and_back(rested, engine):
+    if engine == "BLENDER_WORKBENCH" and "vulkan" in sys.argv:
+        pytest.skip("known: Blender crashes in Mesa's lavapipe when Workbench takes over, see the README")
     rested.run("view().overlay.show_overlays = False")
     rested.rest()
     before = rested.picture()
