@@ -50,9 +50,9 @@ def uniforms():
 
 
 def fetch(texture):
-    """GLSL function `fetch_<texture>(texel)` over the sampler `<texture>_data`."""
+    """GLSL function `fetch_<texture>(texel)` over `texel_<texture>(place)`, which devices define."""
     place = f"ivec2(texel & {layout.DATA_WIDTH - 1}, texel >> {layout.DATA_WIDTH_BITS})"
-    return f"vec4 fetch_{texture}(int texel) {{\n  return texelFetch({texture}_data, {place}, 0);\n}}\n"
+    return f"vec4 fetch_{texture}(int texel) {{\n  return texel_{texture}({place});\n}}\n"
 
 
 def constants():

@@ -51,6 +51,29 @@ class Device(Protocol):
         """Free a texture or target."""
 
 
+#: Data textures by how often rays read them, and how many of a program may be images in every driver.
+_READ_MOST = ("nodes", "spheres", "cylinders", "cones", "discs", "triangles", "instances", "tables")
+_MAX_IMAGES = 8
+
+
+def loaded_as_images(source, renderer):
+    """Which data textures of a program are best declared as images on this renderer, () for none.
+
+    A GPU has caches for textures. Mesa's software rasteriser calls a function for each texelFetch, which finds the mip
+    level lane by lane and saves all registers; an image load, in line, takes a third of the time.
+    """
+    if "llvmpipe" not in renderer:
+        return ()
+    return tuple(name for name in _READ_MOST if name in source.textures)[:_MAX_IMAGES]
+
+
+def texel_readers(source, images):
+    """The macros (signature, expression) by which a program reads its data textures, see `record_glsl.fetch`."""
+    for name in source.textures:
+        read = f"imageLoad({name}_data, place)" if name in images else f"texelFetch({name}_data, place, 0)"
+        yield f"texel_{name}(place)", read
+
+
 def row_pieces(first, count, width):
     """Cut texels from number `first` on into rectangles of a texture `width` wide: yields the first texel's number and
     which of the `count` it holds; at most a part of a row, whole rows, a part of a row."""

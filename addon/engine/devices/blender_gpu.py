@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import DeviceError
 from ..glsl_functions import SHADER_FOLDER
 from ..layout import DATA_WIDTH, data_texture
-from .base import FULL_SCREEN_TRIANGLE, describe_compile_error
+from .base import FULL_SCREEN_TRIANGLE, describe_compile_error, loaded_as_images, texel_readers
 
 _VERTEX = "void main() { gl_Position = vec4(position, 0.0, 1.0); }"
 
@@ -141,8 +141,14 @@ class BlenderDevice:
         if source.uniform_struct:
             info.typedef_source(source.uniform_struct)
             info.uniform_buf(0, "Frame", "frame")
+        images = loaded_as_images(source, self.name)
         for unit, name in enumerate(source.textures):
-            info.sampler(unit, "FLOAT_2D", f"{name}_data")
+            if name in images:
+                info.image(images.index(name), "RGBA32F", "FLOAT_2D", f"{name}_data", qualifiers={"READ"})
+            else:
+                info.sampler(unit, "FLOAT_2D", f"{name}_data")
+        for name, value in texel_readers(source, images):
+            info.define(name, value)
         for location, name in enumerate(source.outputs):
             info.fragment_out(location, "VEC4", name)
         info.vertex_source(_VERTEX)
@@ -161,8 +167,10 @@ class BlenderDevice:
                 shader.bind()
                 if source.uniform_struct:
                     shader.uniform_block("frame", block)
+                images = loaded_as_images(source, self.name)
                 for name in source.textures:
-                    shader.uniform_sampler(f"{name}_data", textures[name])
+                    bind = shader.image if name in images else shader.uniform_sampler
+                    bind(f"{name}_data", textures[name])
                 batch.draw(shader)
             finally:
                 state.blend_set("NONE")

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import DeviceError
 from ..layout import DATA_WIDTH
-from .base import FULL_SCREEN_TRIANGLE, describe_compile_error, row_pieces
+from .base import FULL_SCREEN_TRIANGLE, describe_compile_error, loaded_as_images, row_pieces, texel_readers
 
 _VERTEX = """#version 330
 in vec2 position;
@@ -156,19 +156,26 @@ class HeadlessDevice:
                 number = re.search(r"\b0[:(](\d+)", str(error))
                 line = int(number.group(1)) if number else 0
                 raise DeviceError(describe_compile_error(source, str(error), line)) from error
+            images = loaded_as_images(source, self.name)
             for unit, name in enumerate(source.textures):
-                if f"{name}_data" in program:
+                if f"{name}_data" in program and name not in images:
                     program[f"{name}_data"] = unit
             vertices = self._context.vertex_array(program, [(self._triangle, "2f", "position")])
             self._programs[source] = (source, vertices)
         return self._programs[source]
 
-    @staticmethod
-    def _declarations(source):
-        samplers = "".join(f"uniform sampler2D {name}_data;\n" for name in source.textures)
+    def _declarations(self, source):
+        images = loaded_as_images(source, self.name)
+        textures = "".join(f"#define {name} {value}\n" for name, value in texel_readers(source, images))
+        for unit, name in enumerate(source.textures):
+            if name in images:
+                textures += f"layout(rgba32f, binding = {images.index(name)}) readonly uniform image2D {name}_data;\n"
+            else:
+                textures += f"uniform sampler2D {name}_data;\n"
         outputs = "".join(f"layout(location = {i}) out vec4 {name};\n" for i, name in enumerate(source.outputs))
         block = f"{source.uniform_struct}layout(std140) uniform frame_block {{ Frame frame; }};\n"
-        return f"#version 330\n{block if source.uniform_struct else ''}{samplers}{outputs}#line 1\n"
+        version = 420 if images else 330
+        return f"#version {version}\n{block if source.uniform_struct else ''}{textures}{outputs}#line 1\n"
 
     @_in_context
     def draw(self, program, target, rectangle, textures, uniforms):
@@ -179,8 +186,12 @@ class HeadlessDevice:
             self._uniforms = gl.buffer(reserve=uniforms.nbytes)
         self._uniforms.write(uniforms.tobytes())
         self._uniforms.bind_to_uniform_block(0)
+        images = loaded_as_images(source, self.name)
         for unit, name in enumerate(source.textures):
-            textures[name].use(unit)
+            if name in images:
+                textures[name].bind_to_image(images.index(name), read=True, write=False)
+            else:
+                textures[name].use(unit)
         target.use()
         target.scissor = rectangle
         gl.enable_only(gl.BLEND)
