@@ -427,9 +427,10 @@ KINDS = ("sphere", "cylinder", "cone", "disc", "triangle", "instance", "plane")
 #: Third number of a sphere's `rotation` where the other two are the uv of all of it: no rotation is as long.
 FIXED_UV = 4.0
 
-KIND_BITS = 3
-COUNT_BITS = 5
-MAX_LEAF_SIZE = (1 << COUNT_BITS) - 1
+#: A reference to a child of a node is one integer of 32 bits: its index, and above that what it is, 0 for an inner node.
+INDEX_BITS = 26
+COUNT_BITS = 3
+MAX_LEAF_SIZE = 1 << COUNT_BITS
 LOW_BITS = 24
 
 
@@ -440,9 +441,10 @@ def split_index(index):
 
 
 def pack_leaf(kind, count, index_high):
-    """The `leaf` field of a node: kind, number of primitives and the high part of the index (below 2^16) in one
-    number."""
-    return kind + (np.asarray(count) << KIND_BITS) + (np.asarray(index_high) << (KIND_BITS + COUNT_BITS))
+    """The `leaf` field of a node, what a reference has above the low part of its index: kind and number of primitives
+    (0: an inner node) and the high part of the index."""
+    holds = np.where(np.asarray(count) > 0, 1 + (np.asarray(kind) << COUNT_BITS) + np.asarray(count) - 1, 0)
+    return np.asarray(index_high) + (holds << (INDEX_BITS - LOW_BITS))
 
 
 def most_texels(max_texture_size):

@@ -123,6 +123,7 @@ class MaterialTable:
         not be so the next time."""
         used = {
             "HAS_ABSORPTION": lambda m: not is_zero(m.absorption),
+            "HAS_TRANSMISSION": lambda m: not is_zero(m.transmit),
             "HAS_ROUGHNESS": lambda m: not (is_zero(m.roughness) and is_zero(m.transmit_roughness)) or _has_coat(m),
             "HAS_METALS": lambda m: not (is_zero(m.metallic) and is_zero(m.grazing)),
             "HAS_COAT": _has_coat,

@@ -88,7 +88,8 @@ class Plan:
         """Raise SceneError where a texture would need more than `limit` texels: what, how many, what to do."""
         for cls, count in zip(BY_KIND, self.counts.sum(axis=0).tolist(), strict=True):
             for record in (cls.record, cls.surface_record):
-                check_texels(count * record.texels, limit, f"{count} {cls.kind}s")
+                most = min(limit, record.texels << layout.INDEX_BITS)
+                check_texels(count * record.texels, most, f"{count} {cls.kind}s")
         check_texels(self.instance_texels(0), limit, f"{self.leaves} instances")
         values = sum(self.attributes.texels.values())
         check_texels(values, limit, f"the values of {len(self.attributes.names)} attributes")

@@ -61,9 +61,11 @@ def constants():
     return (
         f"{kinds}"
         f"#define KIND_COUNT {len(layout.KINDS)}\n"
-        f"#define LEAF_KIND(leaf) ((leaf) & {(1 << layout.KIND_BITS) - 1})\n"
-        f"#define LEAF_COUNT(leaf) (((leaf) >> {layout.KIND_BITS}) & {layout.MAX_LEAF_SIZE})\n"
-        f"#define LEAF_HIGH(leaf) ((leaf) >> {layout.KIND_BITS + layout.COUNT_BITS})\n"
-        f"#define LEAF_INNER(high) ((high) << {layout.KIND_BITS + layout.COUNT_BITS})\n"
+        f"#define REFERENCE(first, leaf) ((first) + ((leaf) << {layout.LOW_BITS}))\n"
+        f"#define REFERENCE_INDEX(reference) ((reference) & {(1 << layout.INDEX_BITS) - 1})\n"
+        f"#define REFERENCE_IS_INNER(reference) (((reference) >> {layout.INDEX_BITS}) == 0)\n"
+        f"#define LEAF_OF(reference) ((((reference) >> {layout.INDEX_BITS}) & {(1 << 32 - layout.INDEX_BITS) - 1}) - 1)\n"
+        f"#define LEAF_KIND(leaf) ((leaf) >> {layout.COUNT_BITS})\n"
+        f"#define LEAF_COUNT(leaf) (((leaf) & {layout.MAX_LEAF_SIZE - 1}) + 1)\n"
         f"#define JOIN_INDEX(low, high) ((low) + ((high) << {layout.LOW_BITS}))\n"
     )

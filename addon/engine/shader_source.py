@@ -35,6 +35,7 @@ FEATURES = frozenset(
         "HAS_NORMALS",
         "HAS_HOLDOUT_SHARE",
         "HAS_ABSORPTION",
+        "HAS_TRANSMISSION",
         "HAS_ATTRIBUTES",
         "HAS_VISIBILITY",
         "HAS_HOLDOUT",

@@ -278,8 +278,8 @@ def move_nodes(records, offset):
         piece = records[rows]
         for child in (0, 1):
             leaf = piece[f"leaf_{child}"].astype(np.int64)
-            high = leaf >> layout.KIND_BITS + layout.COUNT_BITS
-            inner = leaf == layout.pack_leaf(0, 0, high)
+            inner = leaf < 1 << layout.INDEX_BITS - layout.LOW_BITS
+            high = np.where(inner, leaf, 0)
             low, high = layout.split_index(
                 piece[f"first_{child}"].astype(np.int64) + (high << layout.LOW_BITS) + offset
             )

@@ -1,8 +1,11 @@
 /* The one traversal: nearest and any hit, the tree of instances and the trees of geometries.
  *
- * A node holds the boxes of both its children. A reference to a child is an index and a `leaf` number, which says what kind
- * and how many primitives a leaf holds, 0 for an inner node. An instance is a leaf of the upper tree: its geometry is walked
- * with the ray in object space, on the same stack, until the stack is back where it stood. */
+ * A node holds the boxes of both its children. A reference to a child is one integer, which says what kind and how many
+ * primitives a leaf holds and where the first one lies. An instance is a leaf of the upper tree: its geometry is walked with
+ * the ray in object space, on the same stack, until the stack is back where it stood.
+ *
+ * Distances to boxes are compared by their bits, as integers: for positive floats the order is the same, a negative one is
+ * less than any of them, and an integer's minimum is one instruction everywhere, where a float's may have to mind NaN. */
 #include "ray_lib.glsl"
 #include "primitive_lib.glsl"
 #include <node>
@@ -11,12 +14,12 @@
 #include <instance_surface>
 #endif
 
-#define BVH_MISS 3.0e38
+#define BVH_MISS 0x7f7fffff /* bits of the largest float */
 
 /* Where a ray has a component 0, a tiny one in its place gives the slab an interval without 0 * infinity. */
 float bvh_inverse_of(float x)
 {
-  return abs(x) < 1e-30 ? (x < 0.0 ? -1e30 : 1e30) : 1.0 / x;
+  return 1.0 / (abs(x) < 1e-30 ? (x < 0.0 ? -1e-30 : 1e-30) : x);
 }
 
 vec3 bvh_inverse(vec3 direction)
@@ -46,15 +49,16 @@ Slabs bvh_slabs(Ray ray)
   return slabs;
 }
 
-/* Paper 3.2.7: where the segment t in (0, t_max] enters a box, 0 when it starts inside, BVH_MISS when it misses. */
-float bvh_box_hit(vec3 lower, vec3 upper, Slabs slabs, float t_max)
+/* Paper 3.2.7: where the segment t in (0, t_max] enters a box, 0 when it starts inside, BVH_MISS when it misses; all as bits.
+ * Two negative distances swap places here, which is the same miss. */
+int bvh_box_hit(vec3 lower, vec3 upper, Slabs slabs, int t_max)
 {
-  vec3 t0 = (lower - slabs.origin_lower) * slabs.inverse;
-  vec3 t1 = (upper - slabs.origin_upper) * slabs.inverse;
-  vec3 first = min(t0, t1);
-  vec3 last = max(t0, t1);
-  float enter = max(max(first.x, first.y), max(first.z, 0.0));
-  float leave = min(min(last.x, last.y), min(last.z, t_max));
+  ivec3 t0 = floatBitsToInt((lower - slabs.origin_lower) * slabs.inverse);
+  ivec3 t1 = floatBitsToInt((upper - slabs.origin_upper) * slabs.inverse);
+  ivec3 first = min(t0, t1);
+  ivec3 last = max(t0, t1);
+  int enter = max(max(first.x, first.y), max(first.z, 0));
+  int leave = min(min(last.x, last.y), min(last.z, t_max));
   return enter <= leave ? enter : BVH_MISS;
 }
 
@@ -97,16 +101,14 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
 #endif
   Ray ray = world_ray;
   Slabs slabs = bvh_slabs(ray);
-  int stack_index[BVH_STACK_SIZE];
-  int stack_leaf[BVH_STACK_SIZE];
-  float stack_t[BVH_STACK_SIZE];
+  int stack[BVH_STACK_SIZE];   /* references */
+  int stack_t[BVH_STACK_SIZE]; /* where the ray enters their boxes */
   int top = 0;
-  int index = int(frame_root);
-  int leaf = LEAF_INNER(int(frame_root_high));
+  int reference = REFERENCE(int(frame_root), int(frame_root_high));
 #ifdef HAS_INSTANCES
   int instance = -1;
   int instance_top = -1; /* where the stack stood when the instance was entered */
-  float enters = 0.0;    /* where the ray enters the box of the reference in hand */
+  int enters = 0;        /* where the ray enters the box of the reference in hand */
   float start = 0.0;     /* in world space, of the ray in object space */
   float scale = 1.0;
   float t_outside = t_max; /* hit.t when the instance was entered */
@@ -131,34 +133,33 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
           break;
         }
         top--;
-        if (stack_t[top] >= hit.t) {
+        if (stack_t[top] >= floatBitsToInt(hit.t)) {
           continue;
         }
-        index = stack_index[top];
-        leaf = stack_leaf[top];
+        reference = stack[top];
 #ifdef HAS_INSTANCES
         enters = stack_t[top];
 #endif
         pop = false;
       }
-      if (LEAF_COUNT(leaf) > 0) {
+      if (!REFERENCE_IS_INNER(reference)) {
         break;
       }
-      Node node = read_node(JOIN_INDEX(index, LEAF_HIGH(leaf)));
-      float t_0 = bvh_box_hit(node.lower_0, node.upper_0, slabs, hit.t);
-      float t_1 = bvh_box_hit(node.lower_1, node.upper_1, slabs, hit.t);
+      Node node = read_node(reference);
+      int t_0 = bvh_box_hit(node.lower_0, node.upper_0, slabs, floatBitsToInt(hit.t));
+      int t_1 = bvh_box_hit(node.lower_1, node.upper_1, slabs, floatBitsToInt(hit.t));
+      int child_0 = REFERENCE(node.first_0, node.leaf_0);
+      int child_1 = REFERENCE(node.first_1, node.leaf_1);
       bool first_is_near = t_0 <= t_1;
-      float t_near = min(t_0, t_1);
-      float t_far = max(t_0, t_1);
+      int t_near = min(t_0, t_1);
+      int t_far = max(t_0, t_1);
+      reference = first_is_near ? child_0 : child_1;
       if (t_far < BVH_MISS) {
-        stack_index[top] = first_is_near ? node.first_1 : node.first_0;
-        stack_leaf[top] = first_is_near ? node.leaf_1 : node.leaf_0;
+        stack[top] = first_is_near ? child_1 : child_0;
         stack_t[top] = t_far;
         top++;
       }
-      index = first_is_near ? node.first_0 : node.first_1;
-      leaf = first_is_near ? node.leaf_0 : node.leaf_1;
-      pop = t_near >= BVH_MISS;
+      pop = t_near == BVH_MISS;
 #ifdef HAS_INSTANCES
       enters = t_near;
 #endif
@@ -166,27 +167,27 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
     if (done) {
       break;
     }
+    int leaf = LEAF_OF(reference);
 #ifdef HAS_INSTANCES
     if (LEAF_KIND(leaf) == KIND_INSTANCE) {
-      Instance entered = read_instance(JOIN_INDEX(index, LEAF_HIGH(leaf)));
+      Instance entered = read_instance(REFERENCE_INDEX(reference));
       if (!ray_sees(world_ray, entered.visibility)) {
         pop = true;
         continue;
       }
-      instance = JOIN_INDEX(index, LEAF_HIGH(leaf));
+      instance = REFERENCE_INDEX(reference);
       instance_top = top;
-      start = BVH_APPROACH * enters;
+      start = BVH_APPROACH * intBitsToFloat(enters);
       ray = bvh_object_ray(entered, read_instance_surface(instance), world_ray, start, scale);
       slabs = bvh_slabs(ray);
       t_outside = hit.t;
       hit.t = (hit.t - start) * scale;
-      index = entered.root;
-      leaf = LEAF_INNER(entered.root_high);
+      reference = REFERENCE(entered.root, entered.root_high);
       continue;
     }
 #endif
     float t_before = hit.t;
-    primitive_leaf_hit(LEAF_KIND(leaf), JOIN_INDEX(index, LEAF_HIGH(leaf)), LEAF_COUNT(leaf), ray, hit);
+    primitive_leaf_hit(LEAF_KIND(leaf), REFERENCE_INDEX(reference), LEAF_COUNT(leaf), ray, hit);
     if (hit.t < t_before) {
 #ifdef HAS_INSTANCES
       hit.instance = instance;

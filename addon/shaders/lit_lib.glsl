@@ -24,6 +24,9 @@ struct Lit {
   ivec4 media; /* around the lit side */
   int shadow;  /* kind of the shadow rays */
   int depth;   /* of the path ray */
+#ifdef HAS_LIGHT_PATH
+  int passed; /* by the path ray, see `Path` */
+#endif
 #ifdef HAS_LIGHT_TREE
   float light_total; /* see `light_tree_total` */
 #endif

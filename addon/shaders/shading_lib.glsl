@@ -185,6 +185,9 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
 #ifdef HAS_CULLING
   culled = !entering && material.cull_back > 0.5;
 #endif
+#ifndef HAS_TRANSMISSION
+  material.transmit = vec3(0.0); /* none has any: what follows from it falls away */
+#endif
   bool transmits = optics_largest(material.transmit) > 0.0;
   bool borders = transmits && material.bounds_body > 0.5 && !culled; /* on a medium; no opaque surface's back bounds a body */
 #ifdef HAS_ABSORPTION
@@ -324,6 +327,9 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
   lit.media = path.media;
   lit.shadow = RAY_SHADOW;
   lit.depth = path.depth;
+#ifdef HAS_LIGHT_PATH
+  lit.passed = path.passed;
+#endif
 #ifdef HAS_LIGHT_LINKING
   lit.visibility = bvh_visibility(hit);
 #endif

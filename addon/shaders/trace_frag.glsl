@@ -2,7 +2,8 @@
  *
  * A path ray is the current ray; refracted rays wait on a stack, the reflected ray goes on as the current one. At a surface
  * that is lit, a shadow ray per light takes its turn before the path goes on. Path and shadow rays share the one call of the
- * traversal, since drivers inline it and it is most of the program. */
+ * traversal, since drivers inline it and it is most of the program. Most shadow rays ask for no surface: they stay in the
+ * inner loop, so that where pixels are worked on in step, all trace rays while one does and all shade while one does. */
 #include "camera_lib.glsl"
 #include "shading_lib.glsl"
 #ifdef HAS_GUIDE
@@ -29,21 +30,34 @@ bool trace_sees_through(Path path, Scattered scattered)
 }
 #endif
 
+/* Whether what a shadow ray meets is asked what it lets pass, or the sky how bright it is. */
+bool trace_asks(Shadow shadow, Hit hit)
+{
+  bool asks = SHADOWS_PASS && frame_shadows_pass > 0.5 && hit.kind >= 0;
+#ifdef HAS_WORLD_LIGHT
+  asks = asks || (hit.kind < 0 && shadow.to_world);
+#endif
+  return asks;
+}
+
 void main()
 {
   float t_max;
   Ray eye = camera_ray(gl_FragCoord.xy, t_max);
   Path path = shading_path(eye, t_max, vec3(1.0), 1, medium_outside());
+  bool path_ends = false; /* no path goes on when the lights are done */
   Path stack[PATH_STACK_SIZE];
   int stacked = 0;
-  Scattered scattered = shading_nothing(path); /* what goes on when the lights are done */
   Lit lit;
   Shadow shadow;
-  int light = -1; /* the light whose shadow ray is on its way; -1: the path's own ray */
+  bool shadow_goes_on = false; /* it has passed a surface: the light has still to be reached */
+  int turns = shadow_turns();
+  int light = turns; /* the light whose turn it is; then comes the path's own ray */
 
   vec3 radiance = vec3(0.0);
   float alpha = 1.0;
 #ifdef HAS_SHADOW_CATCHER
+  bool catches = false; /* lit is a catcher, and `radiance` the light on it alone */
   vec3 radiance_before = vec3(0.0);
   vec3 caught = vec3(0.0);
 #endif
@@ -61,116 +75,99 @@ void main()
    * ended by itself is told. The condition always holds; without one the compiler would take every end for the loop's own. */
   bool ended = false;
   while (frame_max_depth > 0.0) {
-    bool is_shadow = light >= 0;
+    bool is_shadow = false;
     Ray ray = path.ray;
-    float limit = path.t_max;
-    if (is_shadow) {
-      ray = shadow.ray;
-      limit = shadow.t_max;
+    Hit hit;
+    while (true) {
+#ifdef HAS_SHADOW_CATCHER
+      if (catches && light == turns && lit.shadow == RAY_SHADOW) {
+        caught = radiance; /* now the same lights with the shadows of catchers alone */
+        radiance = vec3(0.0);
+        lit.shadow = RAY_SHADOW_OF_CATCHERS;
+        light = 0;
+      }
+#endif
+      if (light < turns && !shadow_goes_on) {
+        shadow = shadow_next(light, lit, radiance);
+#ifdef COUNT_RAYS
+        shadows += light < turns ? 1.0 : 0.0;
+#endif
+      }
+      is_shadow = light < turns;
+#ifdef HAS_SHADOW_CATCHER
+      if (catches && !is_shadow) {
+        if (lit.shadow == RAY_SHADOW) {
+          continue;
+        }
+        path.weight *= shading_caught(caught, radiance);
+        radiance = radiance_before;
+        catches = false;
+      }
+#endif
+      if (!is_shadow && path_ends) {
+        break;
+      }
+      float limit = path.t_max;
+      ray = path.ray;
+      if (is_shadow) {
+        ray = shadow.ray;
+        limit = shadow.t_max;
+      }
+      hit = bvh_traverse(ray, limit, is_shadow && !(SHADOWS_PASS && frame_shadows_pass > 0.5));
+      if (!is_shadow || trace_asks(shadow, hit)) {
+        break;
+      }
+      radiance += hit.kind < 0 ? shadow_arrived(shadow) : vec3(0.0);
+      shadow_goes_on = false;
+      light++;
     }
-    Hit hit = bvh_traverse(ray, limit, is_shadow && !(SHADOWS_PASS && frame_shadows_pass > 0.5));
-    bool missed = hit.kind < 0;
-    bool path_ends = missed && !is_shadow;
+    if (!is_shadow && path_ends) {
+#ifdef HAS_DEPTH_CUE
+      if (guide_is_hit(guide) && !cued) {
+        float cue = guide_depth_cue(guide.x);
+        radiance = mix(radiance, alpha * frame_depth_cue_color, cue);
+        cued = true;
+        if (frame_depth_cue_background > 0.5) { /* what is behind everything shows through what is far */
+          path = shading_path(eye, 0.0, vec3(cue * alpha), 1, medium_outside());
+          path_ends = false;
+          continue;
+        }
+      }
+#endif
+      ended = true;
+      break;
+    }
 
     /* One call for surfaces and sky, path and shadow rays: drivers inline it too. */
+    bool missed = hit.kind < 0;
     Surface surface = bvh_surface(hit, ray);
-    Point point = point_of_surface(surface, ray, hit.t, path.depth);
+    int depth = is_shadow ? lit.depth : path.depth;
+    Point point = point_of_surface(surface, ray, hit.t, depth);
     if (missed) {
-      point = point_of_sky(surface, ray, path.depth);
+      point = point_of_sky(surface, ray, depth);
       point.ray_kind = is_shadow ? RAY_DIFFUSE : ray.kind;
     }
 #ifdef HAS_LIGHT_PATH
-    point.ray_depth -= path.passed;
-    point.passed = path.passed + (is_shadow ? shadow.surfaces : 0);
+    int passed = is_shadow ? lit.passed : path.passed;
+    point.ray_depth -= passed;
+    point.passed = passed + (is_shadow ? shadow.surfaces : 0);
     point.ray_length += is_shadow ? 0.0 : path.length_before;
 #endif
     Material material = material_at(missed ? int(frame_world_material) : surface.material, point);
 
     if (is_shadow) {
-      if (missed) {
-        vec3 arrived = shadow_arrived(shadow);
+      shadow_goes_on = !missed && shadow_pass(shadow, hit.t, surface, material);
 #ifdef HAS_WORLD_LIGHT
-        arrived *= shadow.to_world ? material.glow : vec3(1.0);
+      radiance += missed ? shadow_arrived(shadow) * material.glow : vec3(0.0);
 #endif
-        radiance += arrived;
-      }
-      else if (SHADOWS_PASS && frame_shadows_pass > 0.5 && shadow_pass(shadow, hit.t, surface, material)) {
-        continue;
-      }
-      light++;
+      light += shadow_goes_on ? 0 : 1;
+      continue;
     }
 #ifdef HAS_SEEN_LAMPS
-    else {
-      radiance += shading_lamps(path, hit.t, missed);
-    }
+    radiance += shading_lamps(path, hit.t, missed);
 #endif
-    if (!is_shadow && !missed) {
-#ifdef COUNT_RAYS
-      eye_hits += path.depth == 1 ? 1.0 : 0.0;
-#endif
-      scattered = shading_scatter(path, hit, surface, material, radiance, alpha, lit);
-#ifdef HAS_GUIDE
-      if (path.ray.kind == RAY_CAMERA && !guide_is_hit(guide) && !trace_sees_through(path, scattered)) {
-        guide = guide_hit_make(hit, point);
-      }
-#endif
-#ifdef HAS_SHADOW_CATCHER
-      if (scattered.catches) { /* meanwhile `radiance` is the light on the catcher */
-        radiance_before = radiance;
-        radiance = vec3(0.0);
-      }
-#endif
-      light = lit_is(lit) ? 0 : shadow_turns();
-#ifdef FLAT_COLORS
-      radiance += lit.diffuse + path.weight * material.metallic;
-      scattered.reflects = false;
-      light = shadow_turns();
-#endif
-    }
-
-    if (light >= 0) {
-      shadow = shadow_next(light, lit, radiance);
-#ifdef HAS_SHADOW_CATCHER
-      if (scattered.catches && light == shadow_turns() && lit.shadow == RAY_SHADOW) {
-        caught = radiance; /* now the same lights with the shadows of catchers alone */
-        radiance = vec3(0.0);
-        lit.shadow = RAY_SHADOW_OF_CATCHERS;
-        light = 0;
-        shadow = shadow_next(light, lit, radiance);
-      }
-#endif
-      if (light < shadow_turns()) {
-        TRACE_COUNT(shadows);
-        continue;
-      }
-      light = -1;
-      if (scattered.refracts) {
-        TRACE_COUNT(refracted);
-        if (!scattered.reflects) {
-          path = scattered.refracted;
-        }
-        else if (stacked < PATH_STACK_SIZE) {
-          stack[stacked++] = scattered.refracted;
-        }
-        else {
-          TRACE_COUNT(dropped);
-        }
-      }
-      if (scattered.reflects) {
-        TRACE_COUNT(reflected);
-        path = scattered.reflected;
-      }
-      path_ends = !scattered.reflects && !scattered.refracts;
-#ifdef HAS_SHADOW_CATCHER
-      if (scattered.catches) {
-        path.weight *= shading_caught(caught, radiance);
-        radiance = radiance_before;
-        path.t_max = 0.0; /* on it goes, to where there is nothing but the sky */
-        path_ends = false;
-      }
-#endif
-    }
-    if (missed && !is_shadow) {
+    path_ends = missed;
+    if (missed) {
       if (frame_film_transparent > 0.5 && path.ray.kind == RAY_CAMERA) {
         alpha -= optics_mean(path.weight);
       }
@@ -182,24 +179,59 @@ void main()
         radiance += seen;
       }
     }
-    if (path_ends) {
-      if (stacked == 0) {
-#ifdef HAS_DEPTH_CUE
-        if (guide_is_hit(guide) && !cued) {
-          float cue = guide_depth_cue(guide.x);
-          radiance = mix(radiance, alpha * frame_depth_cue_color, cue);
-          cued = true;
-          if (frame_depth_cue_background > 0.5) { /* what is behind everything shows through what is far */
-            path = shading_path(eye, 0.0, vec3(cue * alpha), 1, medium_outside());
-            continue;
-          }
-        }
+    else {
+#ifdef COUNT_RAYS
+      eye_hits += path.depth == 1 ? 1.0 : 0.0;
 #endif
-        ended = true;
-        break;
+      Scattered scattered = shading_scatter(path, hit, surface, material, radiance, alpha, lit);
+#ifdef HAS_GUIDE
+      if (path.ray.kind == RAY_CAMERA && !guide_is_hit(guide) && !trace_sees_through(path, scattered)) {
+        guide = guide_hit_make(hit, point);
       }
-      path = stack[--stacked];
+#endif
+      light = lit_is(lit) ? 0 : turns;
+#ifdef FLAT_COLORS
+      radiance += lit.diffuse + path.weight * material.metallic;
+      scattered.reflects = false;
+      light = turns;
+#endif
+#ifdef HAS_TRANSMISSION
+      if (scattered.refracts && scattered.reflects) {
+        if (stacked < PATH_STACK_SIZE) {
+          stack[stacked++] = scattered.refracted;
+        }
+        else {
+          TRACE_COUNT(dropped);
+        }
+      }
+#endif
+#ifdef COUNT_RAYS
+      refracted += scattered.refracts ? 1.0 : 0.0;
+      reflected += scattered.reflects ? 1.0 : 0.0;
+#endif
+      path_ends = !scattered.reflects && !scattered.refracts;
+      if (scattered.reflects) {
+        path = scattered.reflected;
+      }
+      else if (scattered.refracts) {
+        path = scattered.refracted;
+      }
+#ifdef HAS_SHADOW_CATCHER
+      catches = scattered.catches;
+      if (catches) { /* meanwhile `radiance` is the light on the catcher */
+        radiance_before = radiance;
+        radiance = vec3(0.0);
+        path.t_max = 0.0; /* on it goes, to where there is nothing but the sky */
+        path_ends = false;
+      }
+#endif
     }
+#ifdef HAS_TRANSMISSION
+    if (path_ends && stacked > 0) {
+      path = stack[--stacked];
+      path_ends = false;
+    }
+#endif
   }
   out_color = vec4(radiance, ended ? alpha : UNENDED_ALPHA);
 #ifdef HAS_OUTLINES

@@ -302,20 +302,22 @@ def test_surfaces_of_instances(device, seed):
         assert not np.isfinite(traverse(device, scene, again.spawned, following).t).any()
 
 
-def test_leaf_and_index_survive_the_gpu(device):
+def test_references_survive_the_gpu(device):
     """Indices past 2^24, kinds and counts as numpy packs them and as GLSL takes them apart."""
     rng = np.random.default_rng(0)
-    index = np.concatenate([[0, 1, 2**24 - 1, 2**24, 2**24 + 1, 2**31 - 1], rng.integers(0, 2**31, 5000)])
-    kind, count = rng.integers(0, len(layout.KINDS), len(index)), rng.integers(0, layout.MAX_LEAF_SIZE + 1, len(index))
+    last = 2**layout.INDEX_BITS - 1
+    index = np.concatenate([[0, 1, 2**24 - 1, 2**24, 2**24 + 1, last], rng.integers(0, last, 5000, endpoint=True)])
+    kind = rng.integers(0, layout.KINDS.index("instance"), len(index), endpoint=True)
+    count = rng.integers(1, layout.MAX_LEAF_SIZE, len(index), endpoint=True)
     low, high = layout.split_index(index)
     leaf = layout.pack_leaf(kind, count, high)
-    zero = np.zeros(len(index))
+    inner = layout.pack_leaf(0, 0, high)
     color, root = harness.run_values(
-        device, "index_frag.glsl", low, leaf, zero, zero, low, high, outputs=("out_color", "out_root")
+        device, "index_frag.glsl", low, leaf, low, inner, outputs=("out_color", "out_root")
     )
     assert np.array_equal(color[:, 0], kind) and np.array_equal(color[:, 1], count)
     assert np.array_equal(color[:, 2].astype(np.int64) + color[:, 3].astype(np.int64) * 65536, index)
-    assert (root[:, 0] == 0).all()
+    assert (root[:, 0] == 0).all() and (root[:, 1] == 1).all()
     assert np.array_equal(root[:, 2].astype(np.int64) + root[:, 3].astype(np.int64) * 65536, index)
 
 

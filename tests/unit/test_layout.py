@@ -71,6 +71,8 @@ def test_no_name_is_given_twice():
         names = [field.name for field in record.fields]
         assert len(set(names)) == len(names), record.name
 
+INDEX_HIGH_BITS = layout.INDEX_BITS - layout.LOW_BITS
+
 
 def test_a_field_across_two_texels_is_refused():
     with pytest.raises(ValueError, match="record broken: field b straddles"):
@@ -87,22 +89,18 @@ def test_indices_survive_float32(index):
     assert int(stored[0]) + (int(stored[1]) << 24) == index
 
 
-def test_leaves_survive_float32():
+def test_references_survive_float32():
+    last = layout.KINDS.index("instance")
     kind, count, high = (
-        a.ravel()
-        for a in np.meshgrid(range(len(layout.KINDS)), range(layout.MAX_LEAF_SIZE + 1), [0, 1, 127, 2**16 - 1])
+        a.ravel() for a in np.meshgrid(range(last + 1), range(1, layout.MAX_LEAF_SIZE + 1), range(1 << INDEX_HIGH_BITS))
     )
-    leaf = layout.pack_leaf(kind, count, high)
-    assert leaf.max() < 2**24 and (leaf.astype(np.float32) == leaf).all()
-    text = record_glsl.constants()
-    for macro, expected in (("LEAF_KIND", kind), ("LEAF_COUNT", count), ("LEAF_HIGH", high)):
-        body = re.search(rf"#define {macro}\(leaf\) (.*)", text).group(1)
-        assert (eval(body, {"leaf": leaf}) == expected).all(), macro
-    assert len(np.unique(leaf)) == len(leaf)
+    leaf = np.concatenate([layout.pack_leaf(kind, count, high), layout.pack_leaf(0, 0, np.arange(1 << INDEX_HIGH_BITS))])
+    assert len(np.unique(leaf)) == len(leaf) and 0 <= leaf.min() and leaf.max() < 2 ** (32 - layout.LOW_BITS)
+    assert (leaf.astype(np.float32) == leaf).all()
 
 
 def test_a_kind_s_number_is_its_label():
     from addon.engine.primitives import BY_KIND
 
     assert [cls.kind for cls in BY_KIND] == list(layout.KINDS[: len(BY_KIND)])
-    assert len(layout.KINDS) <= 1 << 3, "three bits in a leaf"
+    assert layout.pack_leaf(layout.KINDS.index("instance"), layout.MAX_LEAF_SIZE, 0) < 2 ** (32 - layout.LOW_BITS)

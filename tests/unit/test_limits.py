@@ -94,9 +94,13 @@ def test_a_billion_is_refused_at_once(nothing_is_built):
 def test_numbers_of_texels_fit_the_integers_of_the_shader():
     assert layout.most_texels(16384) == 4096 * 16384
     assert layout.most_texels(1 << 30) == (1 << 31) - 1, "GLSL's int, whatever the device says"
-    largest = layout.most_texels(1 << 30) // layout.NODE.texels
-    low, high = layout.split_index(largest)
-    assert low + (high << 24) == largest and layout.pack_leaf(7, layout.MAX_LEAF_SIZE, high) < 1 << 24
+    assert layout.most_texels(16384) // layout.NODE.texels < 1 << layout.INDEX_BITS, "every node has a reference"
+
+
+def test_what_references_cannot_count_is_refused(nothing_is_built):
+    many = spheres(1).take(np.broadcast_to(np.zeros(1, int), 2**layout.INDEX_BITS + 1))
+    with pytest.raises(SceneError, match=f"67108865 spheres need 67108865 texels, a texture here holds {2**26}"):
+        pack(scene_of(many), 1 << 20)
 
 
 @pytest.mark.parametrize("texels", [0, 1, 2**24 - 1, 2**24, 2**24 + 1, 50_000_001, 2**31 - 4097])
