@@ -26,6 +26,8 @@ _INTERSECTION_COST = np.array([cls.intersection_cost for cls in BY_KIND], np.flo
 
 #: Trees of so many primitives are kept for refits: smaller ones are built in no time.
 _WORTH_KEEPING = 4096
+#: Trees of fewer primitives are never built quickly: good ones take no time.
+QUICK_FROM = 1 << 14
 #: A refitted tree that costs so much more than a built one is built.
 WORN = 1.3
 #: Of so many trees at once the cost of each is worth knowing.
@@ -41,11 +43,11 @@ class TreePacker:
 
     `uploads`: of the records, those of the nodes come with `finish`. `bases` (G, K): index of the first record of each
     kind, by number. `trees`: `BuiltTree`s by number. `seconds`: by stage. `refitted`: how many trees were not built.
-    `keep`: whether trees are kept for refits.
+    `keep`: whether trees are kept for refits. `quick`: whether large trees are built quickly, for slower rays.
     """
 
-    def __init__(self, plan, numbers, residency, origin, *, top_nodes, keep):
-        self.plan, self.residency, self.keep = plan, residency, keep
+    def __init__(self, plan, numbers, residency, origin, *, top_nodes, keep, quick=False):
+        self.plan, self.residency, self.keep, self.quick = plan, residency, keep, quick
         self.seconds, self.trees, self.uploads, self.refitted = {}, {}, {}, 0
         self._added = {}
         self._move = Similarity(np.eye(3), 1.0, -origin) if origin.any() else None
@@ -74,11 +76,13 @@ class TreePacker:
         geometry = self.plan.geometries[number]
         parts = dict(geometry.kinds())
         move = self._move if self.plan.in_world[number] else None
-        tree = kept = None
+        tree, quick = None, False
         if replaced is not None:
             tree, kept, cost = self._refitted(number, parts, move, replaced.kept)
+            quick = replaced.quick
         if tree is None:
-            tree, kept, cost = self._built(number, geometry.name, parts, move)
+            quick = self.quick and self.plan.counts[number].sum() >= QUICK_FROM
+            tree, kept, cost = self._built(number, geometry.name, parts, move, quick)
         with timed(self.seconds, "records"):
             for label, part, order in rows_by_kind(tree, parts):
                 attributes.write((number, label), part, order)
@@ -92,16 +96,20 @@ class TreePacker:
             self.trees[number],
             attributes.ranges(number),
             kept,
+            quick,
         )
 
-    def _built(self, number, name, parts, move):
+    def _built(self, number, name, parts, move, quick):
         """Build a tree and write the records of its primitives; (tree, what is kept of it, its cost or 0)."""
         with timed(self.seconds, "bounds"):
             lower, upper = _bounds(parts.values(), move)
             labels = np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])
         with timed(self.seconds, "tree"):
             try:
-                tree = bvh.build(lower, upper, labels, leaf_size=_LEAF_SIZE, intersection_cost=_INTERSECTION_COST)
+                if quick:
+                    tree = bvh.quick_build(lower, upper, labels, leaf_size=_LEAF_SIZE)
+                else:
+                    tree = bvh.build(lower, upper, labels, leaf_size=_LEAF_SIZE, intersection_cost=_INTERSECTION_COST)
             except ValueError as error:
                 raise SceneError(f"geometry {name!r}: {error}") from error
             del lower, upper, labels

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from addon.engine import layout
+from addon.engine.changes import Change
 from addon.engine.errors import SceneError
 from addon.engine.material import surface_image
 from addon.engine.packing import pack
 from addon.engine.primitives import Cylinders, Planes, Spheres, Triangles
 from addon.engine.scene import Camera, Geometry, Image, Instances, Light, Material, Scene, Visibility, World
+from addon.engine.tree_packing import QUICK_FROM
 
 LIMIT = 16384
 
@@ -60,6 +62,39 @@ def leaves(packed):
             else:
                 found.append((kind, first, count))
     return found
+
+
+def test_quick_trees_stand_until_better_ones_are_asked_for():
+    """Those of few primitives are good from the start."""
+    large, small = Geometry(spheres(QUICK_FROM)), Geometry(spheres(100))
+    scene = scene_of()
+    scene.instances = [Instances(large, np.eye(4)), Instances(small, np.eye(4))]
+    quick = pack(scene, LIMIT, keep=True, quick=True)
+    covered = np.zeros(QUICK_FROM + 100, int)
+    for _, first, count in leaves(quick):
+        covered[first : first + count] += 1
+    assert (covered == 1).all()
+    again = pack(scene, LIMIT, quick.residency, keep=True, quick=True)
+    assert not again.change & Change.GEOMETRY and "nodes" not in again.uploads
+    better = pack(scene, LIMIT, again.residency, keep=True)
+    assert better.change & Change.GEOMETRY and better.uploads["sphere_surfaces"].count == QUICK_FROM
+    assert better.statistics["bvh"] == pack(scene, LIMIT, keep=True).statistics["bvh"] != quick.statistics["bvh"]
+    last = pack(scene, LIMIT, better.residency, keep=True, quick=True)
+    assert not last.change & Change.GEOMETRY and "nodes" not in last.uploads
+
+
+def test_a_quick_tree_of_instances_stands_until_a_better_one_is_asked_for():
+    matrices = np.tile(np.eye(4), (QUICK_FROM, 1, 1))
+    matrices[:, :3, 3] = np.random.default_rng(0).random((QUICK_FROM, 3)) * 100
+    scene = scene_of()
+    scene.instances = [Instances(Geometry(spheres(10)), matrices)]
+    quick = pack(scene, LIMIT, keep=True, quick=True)
+    again = pack(scene, LIMIT, quick.residency, keep=True, quick=True)
+    assert "instances" not in again.uploads
+    better = pack(scene, LIMIT, again.residency, keep=True)
+    assert better.change & Change.INSTANCES and not better.change & Change.GEOMETRY
+    assert better.statistics["bvh"] == pack(scene, LIMIT, keep=True).statistics["bvh"] != quick.statistics["bvh"]
+    assert "instances" not in pack(scene, LIMIT, better.residency, keep=True, quick=True).uploads
 
 
 def test_every_primitive_is_in_one_leaf():

@@ -4,6 +4,7 @@ from .boxes import rounded_outward
 from .build import build
 from .cost import sah_cost, statistics
 from .form import Form
+from .quick import quick_build
 from .refit import refit
 from .sweep import sweep_build
 from .tree import FAR, MAX_DEPTH, Bvh
@@ -14,6 +15,7 @@ __all__ = [
     "Bvh",
     "Form",
     "build",
+    "quick_build",
     "refit",
     "rounded_outward",
     "sah_cost",

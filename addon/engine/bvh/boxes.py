@@ -105,7 +105,12 @@ def half_areas(span: np.ndarray) -> np.ndarray:
 
 
 def morton_order(span: np.ndarray) -> np.ndarray:
-    """(n,) int64: the boxes along a Z-curve through their centres, on a cubic grid of 2^21 cells a side."""
+    """(n,) int64: the boxes along a Z-curve through their centres."""
+    return np.argsort(morton_codes(span), kind="stable")
+
+
+def morton_codes(span: np.ndarray) -> np.ndarray:
+    """(n,) uint64: places of the boxes' centres on a Z-curve, on a cubic grid of 2^21 cells a side."""
     centre = span[3:] - span[:3]  # twice the centre, which is as good
     low, side = _grid_cube(centre)
     code = np.zeros(span.shape[1], np.uint64)
@@ -113,7 +118,7 @@ def morton_order(span: np.ndarray) -> np.ndarray:
         cell = (centre[axis] - low[axis]) * np.float32(2**MORTON_BITS / side)
         cell = np.clip(cell, 0, 2**MORTON_BITS - 1).astype(np.uint64)
         code |= _spread_bits(cell) << np.uint64(axis)
-    return np.argsort(code, kind="stable")
+    return code
 
 
 def _grid_cube(centre: np.ndarray) -> tuple[np.ndarray, float]:

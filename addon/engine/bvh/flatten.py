@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .cost import cost_by_label
-from .refit import refit
+from .refit import put_around
 from .topology import Topology
 from .tree import MAX_DEPTH, MIXED, Bvh
 
 LEAF_SIZE = 4
+
+Cut = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""See `lay_out`."""
 
 
 def flatten(
@@ -29,13 +34,15 @@ def flatten(
     topology.larger_first()
     count, leaves, kind = _choose_leaves(topology, label[curve], leaf_size, traversal_cost, intersection_cost)
     start, primitives = _depth_first(topology, count)
-    order, run, rank = _runs(curve[primitives], label)
+    order, run, rank = runs(curve[primitives], label)
     del primitives
-    child, size, kinds, depth = _lay_out(topology, leaves, kind, start, count, rank)
-    del count, leaves, kind, start, rank  # the boxes need room of their own
+    leaf = _leaf_nodes(topology, leaves, start)
+    root = len(leaves) - 1
+    child, size, kinds, depth = lay_out(rank[start[leaf]], count[leaf], kind[leaf], root, _follow(topology, leaves))
+    del count, leaves, kind, start, rank, leaf  # the boxes need room of their own
     no_boxes = np.empty((0, 2, 2, 3), np.float32)
     bvh = Bvh(no_boxes, child, size, kinds, order, run, depth)
-    return refit(bvh, lo, hi)
+    return put_around(bvh, lo, hi)
 
 
 def _choose_leaves(
@@ -87,7 +94,7 @@ def _depth_first(topology: Topology, count: np.ndarray) -> tuple[np.ndarray, np.
     return start, primitives
 
 
-def _runs(primitives: np.ndarray, label: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def runs(primitives: np.ndarray, label: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """`order` and `run` of the `Bvh`; and per depth-first place the place in its label's run, (n,)."""
     run = np.concatenate([[0], np.cumsum(np.bincount(label))]).astype(np.int64)
     if len(run) == 2:
@@ -111,52 +118,55 @@ def _leaf_nodes(topology: Topology, leaves: np.ndarray, start: np.ndarray) -> np
     return nodes[nodes >= 0]
 
 
-def _lay_out(
-    topology: Topology,
-    leaves: np.ndarray,
-    kind: np.ndarray,
-    start: np.ndarray,
-    count: np.ndarray,
-    rank: np.ndarray,
+def _follow(topology: Topology, leaves: np.ndarray) -> Cut:
+    """Cuts as the topology has them; nodes below -1, where it is not followed, are halved."""
+
+    def cut(node, first, number):
+        halve = node < 0
+        inner = np.where(halve, 0, node - topology.n)
+        sides = np.where(halve, -1, np.stack([topology.left[inner], topology.right[inner]])).T
+        return np.where(halve, number // 2, leaves[sides[:, 0]]), sides
+
+    return cut
+
+
+def lay_out(
+    begin: np.ndarray, size: np.ndarray, kind: np.ndarray, root: int, cut: Cut
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-    """Top down, a level at a time: `child`, `count` and `label` of the `Bvh`, and its depth.
+    """Top down, a level at a time: `child`, `count` and `label` of the `Bvh` over leaves, and its depth.
 
     A subtree of c leaves has c - 1 nodes, so depth-first places are known at once. A chain that would become
     too deep is replaced by halves: its leaves are a range in depth-first order, and neighbours there are near
     in space.
-    """
-    leaf = _leaf_nodes(topology, leaves, start)
-    m = max(len(leaf) - 1, 1)
-    child, size = np.full((m, 2), -1, np.int64), np.zeros((m, 2), np.int32)
-    kinds = np.full((m, 2), MIXED, np.int32)
-    if len(leaf) == 1:
-        child[0, 0], size[0, 0], kinds[0, 0] = 0, topology.n, kind[leaf[0]]
-        return child, size, kinds, 1
 
-    place, first, number = np.zeros(1, np.int64), np.zeros(1, np.int64), np.array([len(leaf)])
-    node = np.array([len(leaves) - 1])
-    depth = 0
+    Args:
+        begin, size, kind: (k,) of the leaves in depth-first order: first primitive as in `Bvh.child`, number of
+            primitives, label.
+        root: what `cut` knows the root by.
+        cut: (nodes (s,), their first leaf (s,), their numbers of leaves (s,)) to (leaves of child 0 (s,), nodes
+            below (s, 2)). Nodes are what it likes, but -1 where it was not followed: it is given them again.
+    """
+    m = max(len(begin) - 1, 1)
+    child, count = np.full((m, 2), -1, np.int64), np.zeros((m, 2), np.int32)
+    label = np.full((m, 2), MIXED, np.int32)
+    if len(begin) == 1:
+        child[0, 0], count[0, 0], label[0, 0] = begin[0], size[0], kind[0]
+        return child, count, label, 1
+
+    place, first, number = np.zeros(1, np.int64), np.zeros(1, np.int64), np.array([len(begin)])
+    node, depth = np.array([root]), 0
     while len(place):
-        sides, cut = _sides(topology, leaves, node, number, depth)
-        numbers = np.stack([cut, number - cut], axis=1)
-        firsts = np.stack([first, first + cut], axis=1)
-        places = np.stack([place + 1, place + cut], axis=1)
+        left, sides = cut(node, first, number)
+        # Halving c leaves takes ceil(log2 c) levels: the last chance to begin is when just so many are left.
+        halve = depth + np.ceil(np.log2(number)) >= MAX_DEPTH
+        left, sides = np.where(halve, number // 2, left), np.where(halve[:, None], -1, sides)
+        numbers = np.stack([left, number - left], axis=1)
+        firsts = np.stack([first, first + left], axis=1)
+        places = np.stack([place + 1, place + left], axis=1)
         ends = numbers == 1
-        at = leaf[firsts]
-        child[place] = np.where(ends, rank[start[at]], places)
-        size[place] = np.where(ends, count[at], 0)
-        kinds[place] = np.where(ends, kind[at], MIXED)
+        child[place] = np.where(ends, begin[firsts], places)
+        count[place] = np.where(ends, size[firsts], 0)
+        label[place] = np.where(ends, kind[firsts], MIXED)
         place, first, number, node = places[~ends], firsts[~ends], numbers[~ends], sides[~ends]
         depth += 1
-    return child, size, kinds, depth
-
-
-def _sides(
-    topology: Topology, leaves: np.ndarray, node: np.ndarray, number: np.ndarray, depth: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """The nodes below each `node` (-1 where the topology is not followed), and the leaves in the first."""
-    # Halving c leaves takes ceil(log2 c) levels: the last chance to begin is when just so many are left.
-    halve = (node < 0) | (depth + np.ceil(np.log2(number)) >= MAX_DEPTH)
-    inner = np.where(halve, 0, node - topology.n)
-    sides = np.where(halve, -1, np.stack([topology.left[inner], topology.right[inner]])).T
-    return sides, np.where(halve, number // 2, leaves[sides[:, 0]])
+    return child, count, label, depth
