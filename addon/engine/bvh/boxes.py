@@ -7,10 +7,15 @@ one sum.
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
+
+from .threads import LARGE, each
 
 MAX_LABELS = 1 << 16
 MORTON_BITS = 21  # per axis: three of them fit in 64 bits
+SORTED_PIECE = 1 << 13
 OUTLIER_REACH = 512  # leaves 11 bits an axis to the middle of the scene
 
 
@@ -106,7 +111,7 @@ def half_areas(span: np.ndarray) -> np.ndarray:
 
 def morton_order(span: np.ndarray) -> np.ndarray:
     """(n,) int64: the boxes along a Z-curve through their centres."""
-    return np.argsort(morton_codes(span), kind="stable")
+    return sorting_order(morton_codes(span))
 
 
 def morton_codes(span: np.ndarray) -> np.ndarray:
@@ -119,6 +124,30 @@ def morton_codes(span: np.ndarray) -> np.ndarray:
         cell = np.clip(cell, 0, 2**MORTON_BITS - 1).astype(np.uint64)
         code |= _spread_bits(cell) << np.uint64(axis)
     return code
+
+
+def sorting_order(code: np.ndarray) -> np.ndarray:
+    """(n,) int64: np.argsort of (n,) uint64 codes of 63 bits, stable.
+
+    Faster where they are many: first by 16 bits, which numpy does in linear time, then what has these in common,
+    pieces of some thousands at a time.
+    """
+    if len(code) < LARGE:
+        return np.argsort(code, kind="stable")
+    upper = (code >> np.uint64(3 * MORTON_BITS - 16)).astype(np.uint16)
+    order = np.argsort(upper, kind="stable")
+    code, upper = code[order], upper[order]
+    bounds = np.searchsorted(upper, upper[::SORTED_PIECE])
+    bounds = np.append(bounds[np.diff(bounds, prepend=-1) > 0], len(code)).tolist()
+
+    def sort(pieces):
+        for start, stop in pieces:
+            piece = order[start:stop]
+            piece[:] = piece[np.argsort(code[start:stop], kind="stable")]
+
+    pieces = list(itertools.pairwise(bounds))
+    each(sort, (pieces[start : start + 16] for start in range(0, len(pieces), 16)), worth_it=True)
+    return order
 
 
 def _grid_cube(centre: np.ndarray) -> tuple[np.ndarray, float]:

@@ -7,10 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from .threads import each
+from .threads import LARGE, each
 from .tree import FAR, Bvh
-
-LARGE = 1 << 16  # primitives from which on threads pay
 
 
 class Form:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .boxes import checked_boxes, checked_labels, morton_codes, spans
+from .boxes import checked_boxes, checked_labels, morton_codes, sorting_order, spans
 from .flatten import LEAF_SIZE, Cut, lay_out, runs
 from .refit import put_around
 from .tree import Bvh, empty_bvh
@@ -24,7 +24,7 @@ def quick_build(lo: np.ndarray, hi: np.ndarray, label: np.ndarray | None = None,
     if len(lo) == 0:
         return empty_bvh()
     code = morton_codes(spans(lo, hi))
-    curve = np.argsort(code)
+    curve = sorting_order(code)
     code = code[curve]
     start, curve = _leaf_starts(cell_starts(code, leaf_size), curve, label)
     order, run, rank = runs(curve, label)

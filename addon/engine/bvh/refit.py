@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from .boxes import checked_boxes
-from .form import LARGE, Form
-from .threads import each
+from .form import Form
+from .threads import LARGE, each
 from .tree import Bvh
 
 
