@@ -80,19 +80,30 @@ def checked_labels(label: np.ndarray | None, n: int) -> np.ndarray:
     return label.astype(np.int32, copy=False)
 
 
-def spans(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
-    """(6, n) float32 scaled spans of the (n, 3) float32 boxes (n > 0)."""
-    reach = max(-float(lo.min()), float(hi.max()))
-    exponent = -int(np.frexp(reach)[1]) if reach > 0 else 0
-    # 2^exponent itself may lie beyond float32, its two factors never do.
-    first = np.float32(2.0 ** (exponent // 2))
-    second = np.float32(2.0 ** (exponent - exponent // 2))
+def spans(lo: np.ndarray, hi: np.ndarray, counts: np.ndarray | None = None) -> np.ndarray:
+    """(6, n) float32 scaled spans of the (n, 3) float32 boxes (n > 0).
+
+    `counts`: (t,) how many belong together, each lot scaled for itself; by default all.
+    """
+    if counts is None:
+        first, second = _scale(max(-lo.min(), hi.max()))
+    else:
+        start = np.cumsum(counts) - counts
+        reach = np.maximum(-np.minimum.reduceat(lo, start).min(axis=1), np.maximum.reduceat(hi, start).max(axis=1))
+        first, second = (np.repeat(factor, counts) for factor in _scale(reach))
     span = np.empty((6, len(lo)), np.float32)
     for axis in range(3):
         np.multiply(lo[:, axis], -first, out=span[axis])
         np.multiply(hi[:, axis], first, out=span[3 + axis])
     span *= second
     return span
+
+
+def _scale(reach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Two float32 powers of two that bring coordinates up to `reach` down to 1; their product may be beyond float32."""
+    exponent = np.where(reach > 0, -np.frexp(reach)[1], 0)
+    half = exponent // 2
+    return np.ldexp(np.float32(1), half), np.ldexp(np.float32(1), exponent - half)
 
 
 def take_spans(span: np.ndarray, index: np.ndarray) -> np.ndarray:

@@ -18,7 +18,9 @@ class Form:
         bvh: its `order`, `run`, `child`, `count`, `label` and `depth`.
     """
 
-    def __init__(self, bvh: Bvh):
+    def __init__(self, bvh: Bvh, roots: np.ndarray | None = None):
+        """`roots`: of a `Forest`, ascending."""
+        self._roots = np.zeros(1, np.int64) if roots is None else roots
         narrow = {name: getattr(bvh, name).astype(np.int32) for name in ("child", "order")}
         self.bvh = replace(bvh, boxes=np.empty((0, 2, 2, 3), np.float32), **narrow)
 
@@ -32,28 +34,27 @@ class Form:
         if len(boxes):
             slots = self._slots
             each(lambda row: slots.fill(row, span[row], boxes[:, row]), range(6), worth_it=span.shape[1] >= LARGE)
-        if len(boxes) == 2:  # the only node that may have an empty child
-            boxes[self.bvh.child[0] < 0] = FAR
+        boxes[self.bvh.child.ravel() < 0] = FAR
         return replace(self.bvh, boxes=boxes.reshape(-1, 2, 2, 3))
 
     @cached_property
     def _slots(self):
-        return Slots(self.bvh)
+        return Slots(self.bvh, self._roots)
 
 
 class Slots:
-    """Places for the children of all nodes, a level after the other from the root: what lies below the children of a
+    """Places for the children of all nodes, a level after the other from the roots: what lies below the children of a
     level that are nodes lies in a row.
 
     Attributes:
-        levels: the first node of each level below the root, and their number.
-        inner: (m - 1,) slots of the children that are nodes, in the order of these nodes.
+        levels: the first node of each level below the roots, and their number.
+        inner: (m - roots,) slots of the children that are nodes, in the order of these nodes.
         leaf, start: (leaves,) slots of leaves, and where they begin in the order of the hierarchy, ascending.
         place: (2m,) int64: of each slot, node * 2 + child.
     """
 
-    def __init__(self, bvh: Bvh):
-        nodes, inner = [np.zeros(1, np.int64)], bvh.is_inner
+    def __init__(self, bvh: Bvh, roots: np.ndarray):
+        nodes, inner = [roots], bvh.is_inner
         while len(nodes[-1]):
             nodes.append(bvh.child[nodes[-1]][inner[nodes[-1]]])
         self.levels = np.cumsum([len(level) for level in nodes[:-1]])
@@ -72,5 +73,6 @@ class Slots:
         around[self.leaf] = np.maximum.reduceat(span, self.start)
         for first, stop in zip(self.levels[-2::-1].tolist(), self.levels[:0:-1].tolist(), strict=True):
             below = around[2 * first : 2 * stop]
-            around[self.inner[first - 1 : stop - 1]] = np.maximum(below[::2], below[1::2])
+            above = self.inner[first - self.levels[0] : stop - self.levels[0]]
+            around[above] = np.maximum(below[::2], below[1::2])
         boxes[self.place] = -around if row < 3 else around

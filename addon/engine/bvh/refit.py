@@ -28,8 +28,8 @@ def refit(bvh: Bvh, lo: np.ndarray, hi: np.ndarray) -> Bvh:
     return put_around(bvh, lo, hi)
 
 
-def put_around(bvh: Bvh, lo: np.ndarray, hi: np.ndarray) -> Bvh:
-    """A hierarchy without boxes around the (n, 3) float32 boxes."""
+def put_around(bvh: Bvh, lo: np.ndarray, hi: np.ndarray, roots: np.ndarray | None = None) -> Bvh:
+    """A hierarchy without boxes, or all of those with `roots`, around the (n, 3) float32 boxes."""
     span = np.empty((6, len(lo)), np.float32)
 
     def fill(row):
@@ -39,4 +39,4 @@ def put_around(bvh: Bvh, lo: np.ndarray, hi: np.ndarray) -> Bvh:
             np.negative(span[row], out=span[row])
 
     each(fill, range(6), worth_it=len(lo) >= LARGE)
-    return replace(bvh, boxes=Form(bvh).around(span).boxes)
+    return replace(bvh, boxes=Form(bvh, roots).around(span).boxes)

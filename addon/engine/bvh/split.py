@@ -32,18 +32,23 @@ class _Level:
         return np.diff(self.start)
 
 
-def split_topdown(span: np.ndarray, ids: np.ndarray, weight: np.ndarray, topology: Topology) -> None:
-    """Join the clusters into one tree in `topology`.
+def split_topdown(
+    span: np.ndarray, ids: np.ndarray, weight: np.ndarray, topology: Topology, counts: np.ndarray | None = None
+) -> None:
+    """Join the clusters into trees in `topology`.
 
     Args:
         span: (6, k) float32 spans of the clusters.
         ids: (k,) their nodes in `topology`.
         weight: (k,) numbers of primitives in them.
+        counts: (t,) numbers of clusters, one after the other, that make a tree each; by default all make one.
     """
-    if len(ids) == 1:
-        return
+    counts = np.array([len(ids)]) if counts is None else counts
+    tree = np.repeat(np.arange(len(counts)), counts)
     centre = span[3:] - span[:3]  # twice the centre, which sorts the same
-    level = _Level(np.argsort(centre, axis=1, kind="stable"), np.array([0, len(ids)]))
+    order = np.stack([np.lexsort((axis, tree)) for axis in centre])
+    several = counts > 1
+    level = _Level(order[:, several[tree]], np.concatenate([[0], np.cumsum(counts[several])]))
     fixed = np.rint(span.astype(np.float64) * 2.0**FIXED_BITS).astype(np.int64)
     areas, parents = [], []
     while len(level.order[0]):
@@ -51,21 +56,36 @@ def split_topdown(span: np.ndarray, ids: np.ndarray, weight: np.ndarray, topolog
         areas.append(half_areas(np.maximum.reduceat(span[:, level.order[0]], level.start[:-1], axis=1)))
         level, children = _partition(level, cut, axis, len(fixed[0]))
         parents.append(children)
-    _emit(areas, parents, ids, topology)
+    topology.roots = ids[np.cumsum(counts) - counts]
+    topology.roots[several] = _emit(areas, parents, ids, topology)
 
 
-def _emit(areas: list, parents: list, ids: np.ndarray, topology: Topology) -> None:
-    """Add the levels, deepest first. A child >= 0 is a segment of the next level, ~child an item."""
+def _emit(areas: list, parents: list, ids: np.ndarray, topology: Topology) -> np.ndarray:
+    """Add the levels, deepest first; the nodes of the first. A child >= 0 is a segment of the next level, ~child an
+    item."""
     below = np.empty(0, np.int32)
     for area, children in zip(reversed(areas), reversed(parents), strict=True):
         nodes = np.where(children < 0, ids[np.where(children < 0, ~children, 0)], 0)
         inner = children >= 0
         nodes[inner] = below[children[inner]]
         below = topology.add(nodes[:, 0], nodes[:, 1], area)
+    return below
 
 
 def _cheapest_cuts(level: _Level, fixed: np.ndarray, weight: np.ndarray, halve: bool) -> tuple[np.ndarray, np.ndarray]:
     """Per segment of two items or more: (s,) items left of the cut and (s,) axis."""
+    size = level.size
+    cut, axis = np.ones(len(size), np.int64), np.zeros(len(size), np.int64)
+    many = size > 2  # there is one way to cut the others
+    if many.any():
+        order = level.order[:, np.repeat(many, size)]
+        part = _Level(order, np.concatenate([[0], np.cumsum(size[many])]))
+        cut[many], axis[many] = _swept_cuts(part, fixed, weight, halve)
+    return cut, axis
+
+
+def _swept_cuts(level: _Level, fixed: np.ndarray, weight: np.ndarray, halve: bool) -> tuple[np.ndarray, np.ndarray]:
+    """As `_cheapest_cuts`."""
     size, start = level.size, level.start[:-1]
     segment = np.repeat(np.arange(len(size)), size)
     rank = np.arange(len(segment)) - start[segment]  # items left of a cut before this one

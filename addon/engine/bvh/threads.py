@@ -13,8 +13,8 @@ MOST_THREADS = 8  # memory is no faster for more
 def each(function: Callable, items: Iterable, *, worth_it: bool) -> list:
     """The results of `function` for all items; in threads if that is `worth_it`, numpy lets go of the interpreter's
     lock within most of its loops."""
-    threads = min(os.cpu_count() or 1, MOST_THREADS)
-    if not worth_it or threads == 1:
+    threads = min(os.cpu_count() or 1, MOST_THREADS) if worth_it else 1
+    if threads == 1:
         return [function(item) for item in items]
     with ThreadPoolExecutor(threads) as pool:
         return list(pool.map(function, items))
