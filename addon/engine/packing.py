@@ -26,6 +26,9 @@ from .settings import SHADOWS
 from .timing import timed
 from .tree_packing import QUICK_FROM, AttributeWriter, TreePacker, pieces, rows_by_kind
 
+#: Blocks of instances that are checked together, where they are small.
+_BLOCKS = 256
+
 
 def pack(scene, max_texture_size, before=None, *, keep=False, quick=False):
     """Pack a scene for a device whose textures are at most `max_texture_size` wide and high.
@@ -62,13 +65,16 @@ def _check_matrices(scene, before):
     if not np.isfinite(scene.camera.window).all() or left == right or bottom == top:
         raise SceneError(f"the camera's window {tuple(scene.camera.window)} has no width or no height")
     known = {id(placed()) for placed in before.instances.placed} if before.instances else ()
-    for placed in scene.instances:
-        if id(placed) in known:
+    new = [placed for placed in scene.instances if id(placed) not in known]
+    for start in range(0, len(new), _BLOCKS):
+        blocks = new[start : start + _BLOCKS]
+        if max(map(len, blocks)) < _BLOCKS and invertible(np.concatenate([placed.matrices for placed in blocks])).all():
             continue
-        if not all(invertible(placed.matrices[rows]).all() for rows in pieces(len(placed))):
-            raise SceneError(
-                f"instance {placed.name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
-            )
+        for placed in blocks:
+            if not all(invertible(placed.matrices[rows]).all() for rows in pieces(len(placed))):
+                raise SceneError(
+                    f"instance {placed.name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
+                )
 
 
 def _bounds_of(top, trees):
@@ -112,8 +118,7 @@ class _Packer:
         if plan.placed and not stand:
             self._instance_rows = self._take_rows()
         self._check_room()
-        for number in written.tolist():
-            trees.add(number, attributes, self._replaced_by(number))
+        trees.add(attributes, self._replaced_by)
         residency.geometries |= trees.settle()
         self._check_room()
         self._add_attributes(written, attributes)

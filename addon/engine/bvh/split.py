@@ -120,15 +120,29 @@ def _sweep_areas(fixed: np.ndarray, items: np.ndarray, segment: np.ndarray) -> t
     """(k,) half areas of the unions, within the segment, of the items up to each, and from each on."""
     offset = segment << (FIXED_BITS + 2)
     back = offset[-1] - offset
-    left, right = np.empty((6, len(items))), np.empty((6, len(items)))
-    for row in range(6):
-        values = fixed[row][items]
-        left[row] = np.maximum.accumulate(values + offset) - offset
-        right[row] = (np.maximum.accumulate((values + back)[::-1])[::-1]) - back
+    left, right = np.empty((3, len(items))), np.empty((3, len(items)))
+    for axis in range(3):
+        low, high = fixed[axis][items], fixed[3 + axis][items]
+        size = np.maximum.accumulate(low + offset)
+        size += np.maximum.accumulate(high + offset)
+        size -= 2 * offset
+        left[axis] = size
+        low += back
+        high += back
+        size = np.maximum.accumulate(low[::-1])
+        size += np.maximum.accumulate(high[::-1])
+        right[axis] = size[::-1]
+        right[axis] -= 2 * back
     # Boxes half a unit larger all round: those without area still count by their length, none is free.
-    left += 0.5
-    right += 0.5
-    return half_areas(left), half_areas(right)
+    left += 1.0
+    right += 1.0
+    return _half_areas(left), _half_areas(right)
+
+
+def _half_areas(size: np.ndarray) -> np.ndarray:
+    """(n,) half surface areas of boxes with (3, n) sizes."""
+    x, y, z = size
+    return x * y + z * (x + y)
 
 
 def _partition(level: _Level, cut: np.ndarray, axis: np.ndarray, n: int) -> tuple[_Level, np.ndarray]:
