@@ -11,9 +11,11 @@ from dataclasses import replace
 import numpy as np
 
 from . import bvh, layout
+from .batches import batches, joined
 from .errors import SceneError
 from .primitives import BY_KIND, Similarity
 from .residency import BuiltTree, KeptTree, Resident, Upload
+from .threads import LARGE, each
 from .timing import timed
 
 #: How much larger boxes are stored than they are, relative to the largest of their coordinates: what the intersection
@@ -51,7 +53,7 @@ class TreePacker:
         self._added = {}
         self._move = Similarity(np.eye(3), 1.0, -origin) if origin.any() else None
         self._moved = origin.tobytes() if origin.any() else b""
-        self._batches, self._large = _batches(plan, numbers)
+        self._batches, self._large = batches(plan, numbers, _WORTH_KEEPING)
         self.bases = np.zeros(plan.counts.shape, np.int64)
         numbers = np.concatenate([*self._batches, self._large])  # those of a batch lie one after the other
         for number in np.setdiff1d(plan.built, numbers).tolist():
@@ -114,7 +116,7 @@ class TreePacker:
         """As `_add_large` of many geometries of few primitives each."""
         move = self._move if self.plan.in_world[numbers[0]] else None
         with timed(self.seconds, "bounds"):
-            parts, rows = _joined([self.plan.geometries[number] for number in numbers], self.plan.counts[numbers])
+            parts, rows = joined([self.plan.geometries[number] for number in numbers], self.plan.counts[numbers])
             counts = self.plan.counts[numbers].sum(axis=1)
             lower, upper = np.empty((counts.sum(), 3), np.float32), np.empty((counts.sum(), 3), np.float32)
             labels = np.empty(len(lower), np.int32)
@@ -180,9 +182,26 @@ class TreePacker:
     def _write_records(self, number, label, part, order, move):
         """Write the records of the rows `order` of a part of a geometry, or of what is joined to it."""
         hits, surfaces = self._records(number, label, part)
-        for rows in pieces(len(order)):
+
+        def write(rows):
             piece = part.take(order[rows])
-            hits[rows], surfaces[rows] = (piece.transformed(move) if move else piece).records()
+            _copy_records((piece.transformed(move) if move else piece).records(), hits[rows], surfaces[rows])
+
+        _each_piece(write, len(order))
+
+    def _write_moved(self, number, label, part, order, move, spans):
+        """As `_write_records`; also the `spans` (6, n) of the primitives' boxes, as `bvh.Form` takes them."""
+        hits, surfaces = self._records(number, label, part)
+
+        def write(rows):
+            piece = part.take(order[rows])
+            piece = piece.transformed(move) if move else piece
+            lower, upper = bvh.rounded_outward(*piece.bounds())
+            np.negative(lower.T, out=spans[:3, rows])
+            spans[3:, rows] = upper.T
+            _copy_records(piece.records(), hits[rows], surfaces[rows])
+
+        _each_piece(write, len(order))
 
     def _refitted(self, number, parts, move, kept):
         """Put a tree that is kept around other primitives and write their records, both in one go: most of the time
@@ -190,15 +209,8 @@ class TreePacker:
         with timed(self.seconds, "refit"):
             spans, end = np.empty((6, len(kept.form.bvh.order)), np.float32), 0
             for label, part, order in rows_by_kind(kept.form.bvh, parts):
-                hits, surfaces = self._records(number, label, part)
-                for rows in pieces(len(order)):
-                    piece = part.take(order[rows])
-                    piece = piece.transformed(move) if move else piece
-                    lower, upper = bvh.rounded_outward(*piece.bounds())
-                    start, end = end, end + len(lower)
-                    np.negative(lower.T, out=spans[:3, start:end])
-                    spans[3:, start:end] = upper.T
-                    hits[rows], surfaces[rows] = piece.records()
+                start, end = end, end + len(order)
+                self._write_moved(number, label, part, order, move, spans[:, start:end])
             if not np.isfinite(spans).all():
                 return None, None, 0.0  # building says what is wrong
             tree = kept.form.around(spans)
@@ -265,34 +277,6 @@ class TreePacker:
         self.uploads["nodes"] = Upload(self.node_first * texels, texture, self._node_count * texels)
 
 
-def _batches(plan, numbers):
-    """Of `numbers` of geometries: lists of those that are built together, each of at most `_PIECE` primitives in all,
-    whose own space either is the world's or is not; and those that are large."""
-    sizes = plan.counts[numbers].sum(axis=1)
-    batches, small = [], sizes < _WORTH_KEEPING
-    for in_world in (True, False):
-        of_these = small & (plan.in_world[numbers] == in_world)
-        batch = np.cumsum(sizes[of_these]) // (_PIECE - _WORTH_KEEPING)
-        batches += np.split(numbers[of_these], np.flatnonzero(np.diff(batch)) + 1)
-    return [batch for batch in batches if len(batch)], numbers[~small]
-
-
-def _joined(geometries, counts):
-    """Of geometries with `counts` (n, K) of primitives, by kind number: all primitives of a kind, without attributes;
-    their rows among all primitives, where those of a geometry lie together."""
-    found = {}
-    for geometry in geometries:
-        for label, part in geometry.kinds():
-            found.setdefault(label, []).append(part)
-    parts = {label: BY_KIND[label].concatenate(found[label], attributes=False) for label in sorted(found)}
-    first = (np.cumsum(counts) - counts.ravel()).reshape(counts.shape)
-    rows = {}
-    for label, part in parts.items():
-        count = counts[:, label]
-        rows[label] = np.arange(len(part)) + np.repeat(first[:, label] - (np.cumsum(count) - count), count)
-    return parts, rows
-
-
 @contextmanager
 def _naming(geometry):
     """Say of which geometry a box is that no tree can hold."""
@@ -357,17 +341,30 @@ def pieces(count):
     return (slice(start, min(start + _PIECE, count)) for start in range(0, count, _PIECE))
 
 
+def _copy_records(records, *targets):
+    """Copy arrays of records to others (n,) as floats, which is faster than field by field."""
+    for record, target in zip(records, targets, strict=True):
+        target.view(np.float32)[:] = record.view(np.float32)
+
+
+def _each_piece(function, count):
+    """Call a function with slices that cover `count` rows, in threads where they are many."""
+    each(function, pieces(count), worth_it=count >= LARGE)
+
+
 def _bounds(parts, move):
     """Boxes of all rows of several kinds: lower and upper (n, 3) float32, rounded outwards."""
     count = sum(map(len, parts))
     lower, upper = np.empty((count, 3), np.float32), np.empty((count, 3), np.float32)
     start = 0
     for part in parts:
-        for rows in pieces(len(part)):
+        low, high = lower[start : start + len(part)], upper[start : start + len(part)]
+
+        def write(rows, part=part, low=low, high=high):
             piece = part.take(rows)
-            low, high = (piece.transformed(move) if move else piece).bounds()
-            into = slice(start + rows.start, start + rows.stop)
-            lower[into], upper[into] = bvh.rounded_outward(low, high)
+            low[rows], high[rows] = bvh.rounded_outward(*(piece.transformed(move) if move else piece).bounds())
+
+        _each_piece(write, len(part))
         start += len(part)
     return lower, upper
 

@@ -11,7 +11,7 @@ import itertools
 
 import numpy as np
 
-from .threads import LARGE, each
+from ..threads import LARGE, each
 
 MAX_LABELS = 1 << 16
 MORTON_BITS = 21  # per axis: three of them fit in 64 bits

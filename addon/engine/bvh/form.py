@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .threads import LARGE, each
+from ..threads import LARGE, each
 from .tree import FAR, Bvh
 
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..threads import LARGE, each
 from .boxes import checked_boxes
 from .form import Form
-from .threads import LARGE, each
 from .tree import Bvh
 
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 
-LARGE = 1 << 17  # boxes from which on threads pay
+LARGE = 1 << 17  # boxes, primitives from which on threads pay
 MOST_THREADS = 8  # memory is no faster for more
 
 
