@@ -8,7 +8,7 @@ from . import bvh, layout
 from .errors import SceneError
 from .residency import KeptTree
 from .scene import Instances
-from .tree_packing import WORN, pieces
+from .tree_packing import QUICK_FROM, WORN, pieces
 
 
 @dataclass
@@ -50,10 +50,11 @@ def place(placed, plan, materials, origin):
     )
 
 
-def upper_tree(instances, bounds, kept=None):
+def upper_tree(instances, bounds, kept=None, *, quick=False):
     """The tree over the instances' boxes, and what of it may be kept; `bounds` (G, 2, 3): of the geometries by number.
 
-    `kept`: the `KeptTree` of as many instances, most of which are the same. It serves again unless it is worn.
+    `kept`: the `KeptTree` of as many instances, most of which are the same. It serves again unless it is worn. `quick`:
+    whether a large tree is built quickly.
     """
     count = len(instances.matrices)
     lower, upper = np.empty((count, 3), np.float32), np.empty((count, 3), np.float32)
@@ -66,7 +67,8 @@ def upper_tree(instances, bounds, kept=None):
         if np.isfinite(tree.boxes).all() and bvh.sah_cost(tree) <= WORN * kept.sah_cost:
             return tree, kept
     try:
-        tree = bvh.build(lower, upper, leaf_size=1)
+        build = bvh.quick_build if quick and count >= QUICK_FROM else bvh.build
+        tree = build(lower, upper, leaf_size=1)
     except ValueError as error:
         raise SceneError(f"instances: {error}") from error
     return tree, KeptTree(bvh.Form(tree), float(bvh.sah_cost(tree)))

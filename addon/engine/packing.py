@@ -24,14 +24,18 @@ from .residency import Residency, ResidentInstances, ResidentPlanes, Upload, is_
 from .scene import Visibility
 from .settings import SHADOWS
 from .timing import timed
-from .tree_packing import AttributeWriter, TreePacker, pieces, rows_by_kind
+from .tree_packing import QUICK_FROM, AttributeWriter, TreePacker, pieces, rows_by_kind
+
+#: Blocks of instances that are checked together, where they are small.
+_BLOCKS = 256
 
 
-def pack(scene, max_texture_size, before=None, *, keep=False):
+def pack(scene, max_texture_size, before=None, *, keep=False, quick=False):
     """Pack a scene for a device whose textures are at most `max_texture_size` wide and high.
 
     `before`: the `Residency` of the scene whose textures are there; what both share is not packed again. `keep`:
-    whether to keep what makes later scenes that share much with this one cheap.
+    whether to keep what makes later scenes that share much with this one cheap. `quick`: whether to build large trees
+    quickly, at the price of slower rays. Packing the scene again, not quickly, with `before` of this one replaces them.
 
     Raises SceneError when the scene has no camera, refers to what does not exist, or does not fit; the latter before a
     tree is built.
@@ -41,9 +45,9 @@ def pack(scene, max_texture_size, before=None, *, keep=False):
     seconds, limit = {}, layout.most_texels(max_texture_size)
     with timed(seconds, "build"):
         try:
-            packed = _Packer(scene, limit, before, keep).pack()
+            packed = _Packer(scene, limit, before, keep, quick).pack()
         except _NoRoomError:
-            packed = _Packer(scene, limit, None, keep).pack()
+            packed = _Packer(scene, limit, None, keep, quick).pack()
             packed.change |= Change.ALL_TEXTURES
             for upload in packed.uploads.values():
                 upload.anew = True
@@ -61,13 +65,16 @@ def _check_matrices(scene, before):
     if not np.isfinite(scene.camera.window).all() or left == right or bottom == top:
         raise SceneError(f"the camera's window {tuple(scene.camera.window)} has no width or no height")
     known = {id(placed()) for placed in before.instances.placed} if before.instances else ()
-    for placed in scene.instances:
-        if id(placed) in known:
+    new = [placed for placed in scene.instances if id(placed) not in known]
+    for start in range(0, len(new), _BLOCKS):
+        blocks = new[start : start + _BLOCKS]
+        if max(map(len, blocks)) < _BLOCKS and invertible(np.concatenate([placed.matrices for placed in blocks])).all():
             continue
-        if not all(invertible(placed.matrices[rows]).all() for rows in pieces(len(placed))):
-            raise SceneError(
-                f"instance {placed.name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
-            )
+        for placed in blocks:
+            if not all(invertible(placed.matrices[rows]).all() for rows in pieces(len(placed))):
+                raise SceneError(
+                    f"instance {placed.name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
+                )
 
 
 def _bounds_of(top, trees):
@@ -87,8 +94,9 @@ class _Packer:
     `before`: the `Residency` that the scene before left behind, None where there is nothing.
     """
 
-    def __init__(self, scene, limit, before, keep):
-        self.scene, self.limit, self.before, self.keep = scene, limit, before or Residency(), keep
+    def __init__(self, scene, limit, before, keep, quick):
+        self.scene, self.limit, self.before = scene, limit, before or Residency()
+        self.keep, self.quick = keep, quick
         self.numbers, self.there_is_more = self.before.numbers, before is not None
         self.plan = make_plan(scene, self.numbers)
         self.plan.check(limit)
@@ -104,14 +112,13 @@ class _Packer:
         written = self._geometries_to_write()
         stand = not written.size and self._instances_stand()
         top_nodes = 0 if stand else plan.top_nodes
-        trees = TreePacker(plan, written, residency, self.origin, top_nodes=top_nodes, keep=self.keep)
+        trees = TreePacker(plan, written, residency, self.origin, top_nodes=top_nodes, keep=self.keep, quick=self.quick)
         keys = self._attributes_to_write(written, stand)
         attributes = AttributeWriter(plan.attributes, keys, residency.arenas["attribute"])
         if plan.placed and not stand:
             self._instance_rows = self._take_rows()
         self._check_room()
-        for number in written.tolist():
-            trees.add(number, attributes, self._replaced_by(number))
+        trees.add(attributes, self._replaced_by)
         residency.geometries |= trees.settle()
         self._check_room()
         self._add_attributes(written, attributes)
@@ -179,6 +186,8 @@ class _Packer:
                 self.plan.geometries[number], moved if self.plan.in_world[number] else b""
             ):
                 return False
+            if not self._is_good_enough(resident):
+                return False
             # Attributes lie in the order of the tree, which must be known for those that are new.
             return resident.kept or needed.get(number, set()) <= set(resident.attributes)
 
@@ -188,8 +197,12 @@ class _Packer:
         """The `Resident` whose tree a geometry may have again."""
         replaced = self.plan.geometries[number].replaces
         resident = self.before.geometries.get(self.numbers.get(id(replaced)))
-        same = resident and resident.kept and np.array_equal(resident.counts, self.plan.counts[number])
-        return resident if same else None
+        serves = resident and resident.kept and self._is_good_enough(resident)
+        return resident if serves and np.array_equal(resident.counts, self.plan.counts[number]) else None
+
+    def _is_good_enough(self, resident):
+        """Whether the tree of a `Resident` or of `ResidentInstances` need not give way to a better one."""
+        return self.quick or not resident.quick
 
     def _attributes_to_write(self, written, instances_stand):
         """Keys of the `AttributePlan` whose values are not there."""
@@ -263,7 +276,9 @@ class _Packer:
     def _instances_stand(self):
         """Whether the records of all instances are there; asked where no geometry is new."""
         there, placed = self.before.instances, self.plan.placed
-        return there.is_of(placed, self._instance_key()) if there else not placed
+        if there is None:
+            return not placed
+        return self._is_good_enough(there) and there.is_of(placed, self._instance_key())
 
     def _instances(self, trees, attributes, stand):
         """Write the records of the instances and the upper tree."""
@@ -291,9 +306,11 @@ class _Packer:
         bounds, roots = np.zeros((len(plan.geometries), 2, 3)), np.zeros(len(plan.geometries), np.int64)
         for number, tree in trees.trees.items():
             bounds[number], roots[number] = tree.bounds, tree.root
-        before = self.before.instances.kept if self.before.instances else None
+        there = self.before.instances
+        before = there.kept if there and self._is_good_enough(there) else None
         like_before = before is not None and len(before.form.bvh.order) == plan.leaves
-        top, kept = instance_packing.upper_tree(instances, bounds, before if like_before else None)
+        top, kept = instance_packing.upper_tree(instances, bounds, before if like_before else None, quick=self.quick)
+        quick = (there.quick if kept is before else self.quick) and plan.leaves >= QUICK_FROM
         first, rows = self._instance_rows
         start = first * layout.DATA_WIDTH
         count = plan.instance_texels(start)
@@ -306,7 +323,7 @@ class _Packer:
         ranges = {name: value for (name, _), value in attributes.ranges(len(plan.geometries)).items()}
         built = trees.add_top(top)
         kept = kept if self.keep else None
-        return ResidentInstances(self._instance_key(), references(plan.placed), first, rows, built, ranges, kept)
+        return ResidentInstances(self._instance_key(), references(plan.placed), first, rows, built, ranges, kept, quick)
 
     def _stack_size(self, needed):
         """References that can wait in a traversal, rounded up so that few programs are made; as before, if that is not

@@ -42,7 +42,7 @@ class Resident:
 
     `token`: the one that it had. `moved`: the origin as bytes that these were moved by, empty for none.
     `bases`, `counts` (K,): first record and number of each kind. `attributes`: (first texel, texels) by name and kind
-    number. `kept`: None where a tree is not worth it.
+    number. `kept`: None where a tree is not worth it. `quick`: whether the tree was built quickly, for the time being.
     """
 
     geometry: weakref.ref
@@ -53,6 +53,7 @@ class Resident:
     tree: BuiltTree
     attributes: dict
     kept: KeptTree | None = None
+    quick: bool = False
 
     def is_of(self, geometry, moved):
         """Whether this is what the records of a geometry are."""
@@ -62,7 +63,8 @@ class Resident:
 @dataclass
 class ResidentInstances:
     """The records of all instances and the tree over them. `key`: what they were made from; `placed`: weak references
-    to the `Instances`. `first`, `rows`: of their texture. `attributes`: (first texel, texels) by name."""
+    to the `Instances`. `first`, `rows`: of their texture. `attributes`: (first texel, texels) by name. `quick`: as of a
+    `Resident`."""
 
     key: tuple
     placed: tuple
@@ -71,6 +73,7 @@ class ResidentInstances:
     tree: BuiltTree
     attributes: dict
     kept: KeptTree | None
+    quick: bool = False
 
     def is_of(self, placed, key):
         """Whether these are the records of `Instances`."""

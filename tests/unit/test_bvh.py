@@ -8,15 +8,28 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from addon.engine.bvh import MAX_DEPTH, Form, build, refit, sah_cost, statistics, sweep_build
+from addon.engine.bvh import (
+    MAX_DEPTH,
+    Form,
+    build,
+    build_forest,
+    quick_build,
+    refit,
+    sah_cost,
+    sah_costs,
+    statistics,
+    sweep_build,
+)
 from addon.engine.bvh.agglomerate import agglomerate
-from addon.engine.bvh.boxes import half_areas, morton_order, spans, take_spans
+from addon.engine.bvh.boxes import half_areas, morton_codes, morton_order, spans, take_spans
 from addon.engine.bvh.build import TOP
 from addon.engine.bvh.flatten import flatten
+from addon.engine.bvh.quick import cell_starts
 from addon.engine.bvh.topology import Topology
 from addon.engine.bvh.tree import FAR, MIXED
 
-BUILDERS = pytest.mark.parametrize("builder", [build, sweep_build])
+BUILDERS = pytest.mark.parametrize("builder", [build, sweep_build, quick_build])
+BY_COST = pytest.mark.parametrize("builder", [build, sweep_build])
 SEEDS = pytest.mark.parametrize("seed", range(3))
 
 
@@ -141,6 +154,8 @@ def test_labels_and_leaf_sizes(builder, leaf_size, kinds, n):
     label = rng.integers(0, kinds, n)
     bvh = builder(lo, hi, label, leaf_size=leaf_size)
     check(bvh, lo, hi, label, leaf_size)
+    if builder is quick_build:
+        return
     # Cheap tests fill the leaves to the brim, where the labels allow.
     full = builder(lo, hi, label, leaf_size=leaf_size, intersection_cost=1e-3)
     check(full, lo, hi, label, leaf_size)
@@ -159,7 +174,7 @@ def test_labels_and_leaf_sizes(builder, leaf_size, kinds, n):
 def test_structure_of_any_boxes(corners, leaf_size, kinds):
     lo, hi = corners.min(axis=1), corners.max(axis=1)
     label = np.arange(len(lo)) % kinds
-    for builder in (build, sweep_build):
+    for builder in (build, sweep_build, quick_build):
         check(builder(lo, hi, label, leaf_size=leaf_size), lo, hi, label, leaf_size)
 
 
@@ -194,7 +209,7 @@ def test_empty_child_is_missed(seed):
     assert not slabs(origin, direction, bvh.boxes[:, 1], 1e30).any()
 
 
-@BUILDERS
+@BY_COST
 @SCENES
 def test_larger_child_comes_first(builder, scene):
     size = np.diff(builder(*scene(3000, np.random.default_rng(0))).boxes.astype(np.float64), axis=2)[:, :, 0]
@@ -295,6 +310,37 @@ def test_quality_against_the_sweep(scene, seed):
 
 
 @SCENES
+@SEEDS
+def test_quality_of_the_quick_builder(scene, seed):
+    """No more than twice as dear as the best there is, where things differ much in size; most often far less."""
+    lo, hi = scene(20_000, np.random.default_rng(seed))
+    found, best = quick_build(lo, hi), sah_cost(sweep_build(lo, hi))
+    assert sah_cost(found) <= {sphereflake: 1.8, slivers: 1.5}.get(scene, 1.35) * best
+
+
+@SCENES
+@pytest.mark.parametrize("most", [1, 4, 8])
+def test_quick_leaves_are_the_largest_cells_that_fit(scene, most):
+    """Against cutting cells one by one."""
+    lo, hi = (corner.astype(np.float32) for corner in scene(2000, np.random.default_rng(0)))
+    code = np.unique(morton_codes(spans(lo, hi)))
+    expected, todo = [], [(0, len(code), 63)]
+    while todo:
+        first, stop, bit = todo.pop()
+        if stop - first <= most:
+            expected.append(first)
+            continue
+        upper = first + np.searchsorted(code[first:stop] >> np.uint64(bit - 1) & np.uint64(1), 1)
+        todo += [(a, b, bit - 1) for a, b in ((first, upper), (upper, stop)) if a < b]
+    assert np.array_equal(cell_starts(code, most), np.sort(expected))
+
+
+def test_quick_leaves_of_equal_codes_are_full_enough():
+    start = cell_starts(np.zeros(1000, np.uint64), 8)
+    assert set(np.diff(start, append=1000)) == {8}
+
+
+@SCENES
 def test_quality_against_halving(scene):
     """The sweep itself is no straw man: it beats cutting a Morton curve in halves on every scene."""
     n = 4096
@@ -350,6 +396,30 @@ def test_a_form_around_spans_is_a_refit(count):
     found = Form(bvh).around(np.concatenate([-(lo + step)[order].T, (hi + step)[order].T]))
     assert np.array_equal(found.boxes, expected.boxes) and np.array_equal(found.bounds, expected.bounds)
     assert np.array_equal(found.child, bvh.child) and np.array_equal(found.order, bvh.order)
+
+
+@pytest.mark.parametrize("cost", [0.3, np.array([0.1, 0.5, 2.0])])
+def test_a_forest_is_of_the_trees_that_are_built_one_by_one(cost):
+    """Whatever the sizes and scales of what is beside them, single primitives and single leaves included."""
+    rng = np.random.default_rng(0)
+    scenes = [uniform, clustered, sphereflake, slivers, grid_mesh]
+    counts = np.array([1, 1, 300, 2, 5, *rng.integers(1, 200, 60), 1])
+    lots = []
+    for number, n in enumerate(counts.tolist()):
+        scale = 10 ** rng.uniform(-20, 20)
+        lo, hi = (corner[:n] * scale for corner in scenes[number % len(scenes)](n, rng))
+        lots.append((lo, hi, rng.integers(0, rng.integers(1, 4), n)))
+    forest = build_forest(*map(np.concatenate, zip(*lots, strict=True)), counts, leaf_size=8, intersection_cost=cost)
+    bounds, costs = forest.bounds, sah_costs(forest, intersection_cost=cost)
+    assert len(forest) == len(counts)
+    for number, (lo, hi, label) in enumerate(lots):
+        expected = build(lo, hi, label, leaf_size=8, intersection_cost=cost)
+        found = forest.tree(number)
+        check(found, lo, hi, label, leaf_size=8)
+        for name in ("boxes", "child", "count", "label", "order", "run", "depth"):
+            assert np.array_equal(getattr(found, name), getattr(expected, name)), (number, name)
+        assert np.array_equal(bounds[number], expected.bounds)
+        assert costs[number] == pytest.approx(sah_cost(expected, intersection_cost=cost), rel=1e-6)
 
 
 def bvh_labels(bvh):
@@ -474,7 +544,7 @@ def test_bad_boxes_are_refused(value, message):
     lo, hi = np.zeros((5, 3)), np.ones((5, 3))
     good = build(lo, hi)
     hi[3:, 1] = value
-    for call in (build, sweep_build, lambda lo, hi: refit(good, lo, hi)):
+    for call in (build, sweep_build, quick_build, lambda lo, hi: refit(good, lo, hi)):
         with pytest.raises(ValueError, match=message):
             call(lo, hi)
 

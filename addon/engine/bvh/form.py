@@ -1,4 +1,4 @@
-"""The form of a hierarchy, which can be put around its primitives again when they have moved."""
+"""The form of a hierarchy, which can be put around its primitives, also when they have moved."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .refit import leaves_in_order, nodes_by_level
+from ..threads import LARGE, each
 from .tree import FAR, Bvh
 
 
@@ -18,35 +18,61 @@ class Form:
         bvh: its `order`, `run`, `child`, `count`, `label` and `depth`.
     """
 
-    def __init__(self, bvh: Bvh):
+    def __init__(self, bvh: Bvh, roots: np.ndarray | None = None):
+        """`roots`: of a `Forest`, ascending."""
+        self._roots = np.zeros(1, np.int64) if roots is None else roots
         narrow = {name: getattr(bvh, name).astype(np.int32) for name in ("child", "order")}
         self.bvh = replace(bvh, boxes=np.empty((0, 2, 2, 3), np.float32), **narrow)
 
     def around(self, span: np.ndarray) -> Bvh:
         """The hierarchy around the (6, n) float32 spans of its primitives, in its own order.
 
-        As `refit`, but spans have rows -lo.x, -lo.y, -lo.z, hi.x, hi.y, hi.z: a union is one maximum.
+        Spans have rows -lo.x, -lo.y, -lo.z, hi.x, hi.y, hi.z: a union is one maximum. Each row is put around for
+        itself: leaves first, then a level at a time upward.
         """
-        leaf, start = self._leaves
-        whole = np.full((6, 2 * len(self.bvh)), -FAR, np.float32)
-        whole[:, leaf] = np.maximum.reduceat(span, start, axis=1)
-        for above, below in self._levels:
-            whole[:, above] = np.maximum(np.take(whole, below, axis=1), np.take(whole, below + 1, axis=1))
-        boxes = np.empty((len(self.bvh), 2, 2, 3), np.float32)
-        both = boxes.reshape(-1, 2, 3)
-        both[:, 0], both[:, 1] = -whole[:3].T, whole[3:].T
-        both[~(self.bvh.is_leaf | self.bvh.is_inner).ravel()] = FAR
-        return replace(self.bvh, boxes=boxes)
+        boxes = np.empty((2 * len(self.bvh), 6), np.float32)
+        if len(boxes):
+            slots = self._slots
+            each(lambda row: slots.fill(row, span[row], boxes[:, row]), range(6), worth_it=span.shape[1] >= LARGE)
+        boxes[self.bvh.child.ravel() < 0] = FAR
+        return replace(self.bvh, boxes=boxes.reshape(-1, 2, 2, 3))
 
     @cached_property
-    def _leaves(self):
-        return leaves_in_order(self.bvh)
+    def _slots(self):
+        return Slots(self.bvh, self._roots)
 
-    @cached_property
-    def _levels(self):
-        """From the lowest nodes on: children that are nodes, as node * 2 + child, and the first child of each."""
-        inner, levels = self.bvh.is_inner, []
-        for level in reversed(nodes_by_level(self.bvh.child, inner)):
-            above = (2 * level[:, None] + np.arange(2))[inner[level]]
-            levels.append((above, 2 * self.bvh.child.ravel()[above].astype(np.int64)))
-        return levels
+
+class Slots:
+    """Places for the children of all nodes, a level after the other from the roots: what lies below the children of a
+    level that are nodes lies in a row.
+
+    Attributes:
+        levels: the first node of each level below the roots, and their number.
+        inner: (m - roots,) slots of the children that are nodes, in the order of these nodes.
+        leaf, start: (leaves,) slots of leaves, and where they begin in the order of the hierarchy, ascending.
+        place: (2m,) int64: of each slot, node * 2 + child.
+    """
+
+    def __init__(self, bvh: Bvh, roots: np.ndarray):
+        nodes, inner = [roots], bvh.is_inner
+        while len(nodes[-1]):
+            nodes.append(bvh.child[nodes[-1]][inner[nodes[-1]]])
+        self.levels = np.cumsum([len(level) for level in nodes[:-1]])
+        nodes = np.concatenate(nodes)
+        self.place = (2 * nodes[:, None] + np.arange(2)).ravel()
+        self.inner = np.flatnonzero(inner[nodes])
+        first = np.full(len(bvh.order), -1, np.int64)
+        leaf = np.flatnonzero(bvh.count[nodes])
+        first[bvh.leaf_start[nodes].ravel()[leaf]] = leaf
+        self.start = np.flatnonzero(first >= 0)
+        self.leaf = first[self.start]
+
+    def fill(self, row: int, span: np.ndarray, boxes: np.ndarray) -> None:
+        """One of the six rows of spans (n,) to the column (2m,) of the boxes of all children."""
+        around = np.empty(len(boxes), np.float32)
+        around[self.leaf] = np.maximum.reduceat(span, self.start)
+        for first, stop in zip(self.levels[-2::-1].tolist(), self.levels[:0:-1].tolist(), strict=True):
+            below = around[2 * first : 2 * stop]
+            above = self.inner[first - self.levels[0] : stop - self.levels[0]]
+            around[above] = np.maximum(below[::2], below[1::2])
+        boxes[self.place] = -around if row < 3 else around

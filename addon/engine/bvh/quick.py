@@ -1,0 +1,80 @@
+"""The quick builder, for a first picture: the hierarchy that the order along a Morton curve is already.
+
+C. Lauterbach et al., "Fast BVH Construction on GPUs", 2009: a node is a cell of the grid, cut where the codes of its
+primitives differ in their highest bit. Leaves are the largest cells that hold few enough primitives.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .boxes import morton_codes, sorting_order, spans
+from .build import checked
+from .flatten import LEAF_SIZE, Cut, lay_out, runs
+from .refit import put_around
+from .tree import Bvh, empty_bvh
+
+
+def quick_build(lo: np.ndarray, hi: np.ndarray, label: np.ndarray | None = None, *, leaf_size: int = LEAF_SIZE) -> Bvh:
+    """As `build`, several times faster and up to twice as dear. Costs are not looked at: what fits in a leaf is one,
+    and child 0 is not the larger one but the first along the curve."""
+    lo, hi, label = checked(lo, hi, label, leaf_size)
+    if len(lo) == 0:
+        return empty_bvh()
+    code = morton_codes(spans(lo, hi))
+    curve = sorting_order(code)
+    code = code[curve]
+    start, curve = _leaf_starts(cell_starts(code, leaf_size), curve, label)
+    order, run, rank = runs(curve, label)
+    size = np.diff(start, append=len(curve))
+    leaves, cut = np.array([len(start)]), _cut_by_codes(code[start])
+    child, count, kind, _, depth = lay_out(rank[start], size, label[curve[start]], np.zeros(1, np.int64), leaves, cut)
+    bvh = Bvh(np.empty((0, 2, 2, 3), np.float32), child, count, kind, order, run, int(depth[0]))
+    return put_around(bvh, lo, hi)
+
+
+def cell_starts(code: np.ndarray, most: int) -> np.ndarray:
+    """(k,) int64: where along the curve the largest cells of at most `most` primitives begin; codes (n,) uint64."""
+    # Two neighbours are parted by the cut at the highest bit in which they differ, those with equal codes by their
+    # places. The cell that is cut there reaches as far to either side as the cuts are at lower bits.
+    place = np.arange(1, len(code), dtype=np.uint64)
+    differ = code[1:] ^ code[:-1]
+    bit = np.where(differ == 0, _highest_bit(place ^ (place - np.uint64(1))), 32 + _highest_bit(differ)).astype(np.int8)
+    size = np.full(len(bit), 2, np.int32)
+    for side in (slice(None), slice(None, None, -1)):
+        reaches = np.ones(len(bit), bool)
+        for distance in range(1, min(most, len(bit)) + 1):
+            reaches[side][:distance] = False
+            reaches[side][distance:] &= bit[side][:-distance] < bit[side][distance:]
+            size += reaches
+    return np.concatenate([[0], np.flatnonzero(size > most) + 1])
+
+
+def _highest_bit(code: np.ndarray) -> np.ndarray:
+    """(n,) int64 places of the highest bits of (n,) uint64 codes, counted from 0; -1 of zero."""
+    alone = (code & ~(code >> np.uint64(1))).astype(np.float64)  # what is next to it must not round up
+    return np.where(alone > 0, (alone.view(np.int64) >> 52) - 1023, -1)
+
+
+def _leaf_starts(cell: np.ndarray, curve: np.ndarray, label: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where leaves begin, and the curve with the primitives of each cell by label: a leaf for each label in a cell."""
+    if not label.any():
+        return cell, curve
+    number = np.zeros(len(curve), np.int64)
+    number[cell[1:]] = 1
+    key = np.cumsum(number) << 16 | label[curve]
+    inside = np.argsort(key, kind="stable")
+    key = key[inside]
+    return np.concatenate([[0], np.flatnonzero(key[1:] != key[:-1]) + 1]), curve[inside]
+
+
+def _cut_by_codes(code: np.ndarray) -> Cut:
+    """Cuts of leaves with (k,) ascending uint64 codes where the highest bit changes, of equal ones in halves."""
+
+    def cut(node, first, number):
+        low, high = code[first], code[first + number - 1]
+        same, bit = low == high, np.maximum(_highest_bit(low ^ high), 0).astype(np.uint64)
+        left = np.searchsorted(code, high >> bit << bit) - first
+        return np.where(same, number // 2, left), np.broadcast_to(node[:, None], (len(node), 2))
+
+    return cut
