@@ -102,7 +102,9 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
   Ray ray = world_ray;
   Slabs slabs = bvh_slabs(ray);
   int stack[BVH_STACK_SIZE];   /* references */
+#ifdef HAS_INSTANCES
   int stack_t[BVH_STACK_SIZE]; /* where the ray enters their boxes */
+#endif
   int top = 0;
   int reference = REFERENCE(int(frame_root), int(frame_root_high));
 #ifdef HAS_INSTANCES
@@ -114,9 +116,9 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
   float t_outside = t_max; /* hit.t when the instance was entered */
 #endif
   bool pop = false; /* whether the next reference comes from the stack */
-  bool done = false;
   while (true) {
-    /* Down to the next leaf. Apart from the leaves' tests, which vector processors would carry along masked. */
+    /* Down to the next leaf. Apart from the leaves' tests, which vector processors would carry along masked; left as soon as
+     * there is a leaf or nothing any more, since they go on until the last lane does so. */
     while (true) {
       if (pop) {
 #ifdef HAS_INSTANCES
@@ -128,17 +130,16 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
           instance_top = -1;
         }
 #endif
-        if (top == 0) {
-          done = true;
-          break;
-        }
         top--;
-        if (stack_t[top] >= floatBitsToInt(hit.t)) {
-          continue;
-        }
         reference = stack[top];
 #ifdef HAS_INSTANCES
         enters = stack_t[top];
+        if (enters >= floatBitsToInt(hit.t)) {
+          if (top == 0) {
+            break;
+          }
+          continue;
+        }
 #endif
         pop = false;
       }
@@ -156,15 +157,20 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
       reference = first_is_near ? child_0 : child_1;
       if (t_far < BVH_MISS) {
         stack[top] = first_is_near ? child_1 : child_0;
+#ifdef HAS_INSTANCES
         stack_t[top] = t_far;
+#endif
         top++;
       }
       pop = t_near == BVH_MISS;
 #ifdef HAS_INSTANCES
       enters = t_near;
 #endif
+      if (pop ? top == 0 : !REFERENCE_IS_INNER(reference)) {
+        break;
+      }
     }
-    if (done) {
+    if (pop) {
       break;
     }
     int leaf = LEAF_OF(reference);
@@ -173,6 +179,9 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
       Instance entered = read_instance(REFERENCE_INDEX(reference));
       if (!ray_sees(world_ray, entered.visibility)) {
         pop = true;
+        if (top == 0) {
+          break;
+        }
         continue;
       }
       instance = REFERENCE_INDEX(reference);
@@ -197,10 +206,13 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
       }
     }
     pop = true;
+    if (top == 0) {
+      break;
+    }
   }
 #ifdef HAS_INSTANCES
-  if (instance >= 0) { /* an any-hit ended inside an instance */
-    hit.t = start + hit.t / scale;
+  if (instance >= 0) { /* it ended inside an instance */
+    hit.t = hit.instance == instance ? start + hit.t / scale : t_outside;
   }
 #endif
   return hit;
