@@ -11,7 +11,7 @@ import numpy as np
 
 from . import instance_packing, layout
 from .changes import Change
-from .errors import SceneError
+from .errors import SceneError, StoppedError
 from .expression import is_zero
 from .image_packing import add_images
 from .light_packing import pack_all_lights
@@ -27,11 +27,12 @@ from .timing import timed
 from .tree_packing import AttributeWriter, TreePacker, pieces, rows_by_kind
 
 
-def pack(scene, max_texture_size, before=None, *, keep=False):
+def pack(scene, max_texture_size, before=None, *, keep=False, stopped=None):
     """Pack a scene for a device whose textures are at most `max_texture_size` wide and high.
 
     `before`: the `Residency` of the scene whose textures are there; what both share is not packed again. `keep`:
-    whether to keep what makes later scenes that share much with this one cheap.
+    whether to keep what makes later scenes that share much with this one cheap. `stopped()` is asked now and then
+    whether to raise StoppedError.
 
     Raises SceneError when the scene has no camera, refers to what does not exist, or does not fit; the latter before a
     tree is built.
@@ -41,9 +42,9 @@ def pack(scene, max_texture_size, before=None, *, keep=False):
     seconds, limit = {}, layout.most_texels(max_texture_size)
     with timed(seconds, "build"):
         try:
-            packed = _Packer(scene, limit, before, keep).pack()
+            packed = _Packer(scene, limit, before, keep, stopped).pack()
         except _NoRoomError:
-            packed = _Packer(scene, limit, None, keep).pack()
+            packed = _Packer(scene, limit, None, keep, stopped).pack()
             packed.change |= Change.ALL_TEXTURES
             for upload in packed.uploads.values():
                 upload.anew = True
@@ -87,7 +88,8 @@ class _Packer:
     `before`: the `Residency` that the scene before left behind, None where there is nothing.
     """
 
-    def __init__(self, scene, limit, before, keep):
+    def __init__(self, scene, limit, before, keep, stopped):
+        self._stopped = stopped or (lambda: False)
         self.scene, self.limit, self.before, self.keep = scene, limit, before or Residency(), keep
         self.numbers, self.there_is_more = self.before.numbers, before is not None
         self.plan = make_plan(scene, self.numbers)
@@ -111,9 +113,11 @@ class _Packer:
             self._instance_rows = self._take_rows()
         self._check_room()
         for number in written.tolist():
+            self._check_wanted()
             trees.add(number, attributes, self._replaced_by(number))
         residency.geometries |= trees.settle()
         self._check_room()
+        self._check_wanted()
         self._add_attributes(written, attributes)
         with timed(trees.seconds, "instances"):
             self._instances(trees, attributes, stand)
@@ -159,6 +163,10 @@ class _Packer:
             tables=self.tables,
             table_texels=self.uploads["tables"].texels.reshape(-1, 4) if self.keep else None,
         )
+
+    def _check_wanted(self):
+        if self._stopped():
+            raise StoppedError("packing was stopped")
 
     def _check_room(self):
         if self.there_is_more and not self.residency.fits(self.limit):

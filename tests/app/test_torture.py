@@ -63,7 +63,7 @@ def run_in_window(folder, name, *arguments):
             if size != length:
                 grew, length = time.monotonic(), size
             if process.poll() is not None or time.monotonic() - grew > SILENCE:
-                how = "ended" if process.poll() is not None else "hangs"
+                how = "hangs" if process.poll() is None else f"ended with code {process.poll()}"
                 pytest.fail(f"Blender {how} at {last_steps(steps)} of {folder}; it said:\n{log.read_text()[-6000:]}")
             time.sleep(0.2)
     return json.loads(end.read_text()) + complaints(log)
