@@ -32,7 +32,7 @@ BLOCK = 16  # pixels: another order of the lights is another noise
 DIFFERENT, ALLOWED = 20, 0.01  # of 255, for the means of blocks; part of the blocks
 #: Lines of the log that say that something went wrong.
 COMPLAINT = re.compile(r"Traceback|\bError\b|ERROR|GPUShader:|[Aa]ssert|Invalid|corrupt|not freed", re.MULTILINE)
-FINE = re.compile(r"Unable to bake|Modifier cannot|Info:|Warning:|libdecor|Undo.*not available")
+FINE = re.compile(r"Unable to bake|Modifier cannot|Info:|Warning:|libdecor|Undo.*not available|\bcycles +\|")
 
 pytestmark = [
     pytest.mark.skipif(not shutil.which("Xvfb"), reason="Xvfb, a virtual screen, is not installed"),
