@@ -6,6 +6,8 @@ time. Otherwise:
 
     CONIC_TORTURE_SECONDS=30 CONIC_TORTURE_SEED=7 tools/run_app_tests opengl -- tests/app/test_torture.py -q
 
+On Vulkan with Mesa's software driver some two minutes are what Blender stands, see `window` in conftest.py.
+
 A failure names the folder with the log of the steps; CONIC_TORTURE_STEPS=<number> with the same seed repeats it so far.
 """
 
