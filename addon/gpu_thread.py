@@ -13,17 +13,13 @@ import time
 
 import bpy
 
-from .engine.errors import ConicError
+from .engine.errors import StoppedError
 
 _IDLE_SECONDS = 0.1  # between two looks for work
 _BUSY_SECONDS = 0.002  # the same, while there has been some lately
 
 _pieces = queue.SimpleQueue()
 _last = 0.0
-
-
-class StoppedError(ConicError):
-    """The user stopped the render while it waited for the main thread."""
 
 
 class _Piece:

@@ -25,7 +25,6 @@ class ViewportPicture:
         self.layers = []
         self.view = None
         self.step = 1  # of the film that is there or forms
-        self.finished = False
         self._whole = self._kept = None  # layers: the last whole film of this view; what views before have shown
         self._edges = None  # of the film that forms, see `Layer`
         self._seconds_per_pixel = None  # of the last first picture
@@ -37,6 +36,11 @@ class ViewportPicture:
         return self.session.film.reached[0] if self.step == 1 else 0
 
     @property
+    def finished(self):
+        """Whether nothing is left to be drawn, as long as nobody asks for more samples."""
+        return self.sample >= self._samples
+
+    @property
     def keeps(self):
         """Whether parts of the picture before are shown."""
         return self._kept is not None
@@ -45,7 +49,7 @@ class ViewportPicture:
         """Draw the first picture of a `View`, meant to take `seconds`. `same_scene`: whether it differs from the one
         before by the view alone, so that what is there can be shown where it still is right."""
         self._kept = self._keep(view) if same_scene else None
-        self.view, self._whole, self.finished = view, None, False
+        self.view, self._whole = view, None
         self._first_step = self._choose_step(seconds)
         started = time.perf_counter()
         self._start(self._first_step)
@@ -58,6 +62,7 @@ class ViewportPicture:
     def advance(self, seconds):
         """Go on for about `seconds`."""
         deadline = time.perf_counter() + seconds
+        self.session.film.samples = min(self.session.film.samples, self._samples)  # there may be fewer to draw now
         while not self.finished and (left := deadline - time.perf_counter()) > 0.0:
             if self.session.film.finished:
                 self._go_on()
@@ -106,7 +111,6 @@ class ViewportPicture:
         self._whole = self._layer()
         if self._kept and self._whole.pixel <= self._kept.pixel:
             self._kept = None
-        self.finished = self.step == 1 and self.session.film.samples >= self._samples
 
     @property
     def _samples(self):

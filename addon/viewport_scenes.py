@@ -8,7 +8,6 @@ import weakref
 import bpy
 
 from . import viewport_log
-from .background_job import Job
 from .engine import LoadedScene
 from .engine.changes import Change
 from .engine.timing import timed
@@ -17,6 +16,7 @@ from .render_session import blender_device, is_defect, sentence_of
 from .statistics import Statistics
 from .sync.scene_reader import SceneReader
 from .sync.scene_sync import SyncStatistics, sync_settings
+from .viewport_renewal import Renewal
 
 _LOOK_SECONDS = 0.01  # between two looks whether a scene has been prepared
 _SHOWN_TYPES = sorted(
@@ -30,7 +30,10 @@ class ViewportScene:
     """Blender's scene as viewports show it, read again when it has changed. Use it where the GPU context is active.
 
     `loaded`: the engine's `LoadedScene`. A change takes three parts: reading, here and now; preparing, in another
-    thread; and bringing it to the GPU, a little at each redraw. Meanwhile viewports draw what was loaded before.
+    thread; and bringing it to the GPU, a little at each redraw. Meanwhile viewports draw what was loaded before. A
+    newer change waits until the one under way is through: where changes come faster than they can be loaded, as while
+    the mouse moves something, each would stop the one before and none would be shown. What is stopped is what nobody
+    will see: of a viewport that is closed, and of data that an undo or a file has replaced.
     """
 
     def __init__(self):
@@ -43,8 +46,7 @@ class ViewportScene:
         self.error = ""  # why what was read last could not be loaded
         self.statistics = None  # of what is loaded, until its first picture is there
         self.sessions = weakref.WeakSet()  # the viewports that show it
-        self._reading = None  # statistics of what is being prepared
-        self._job = self._update = None  # what is being prepared; what is being brought to the GPU
+        self._renewal = None  # the `Renewal` under way; what has changed since it was read makes this stale
 
     @property
     def ready(self):
@@ -54,17 +56,17 @@ class ViewportScene:
     @property
     def preparing(self):
         """Whether another thread works, or has done so, on what the next `renew` takes."""
-        return self._job is not None
+        return self._renewal is not None and self._renewal.preparing
 
     @property
     def prepared(self):
         """Whether the next `renew` has something to do at once."""
-        return self._update is not None or (self._job.wait(0.0) if self._job else self.stale)
+        return self._renewal.wait(0.0) if self._renewal else self.stale
 
     @property
     def settled(self):
         """Whether what is loaded is what there is."""
-        return not (self.stale or self._job or self._update)
+        return not (self.stale or self._renewal)
 
     def mark(self, depsgraph):
         """Blender says that something changed."""
@@ -75,50 +77,45 @@ class ViewportScene:
         """Nothing that was read before can be trusted."""
         self.stale = True
         self.reader.forget()
+        if self._renewal:
+            self._renewal.stop()
 
     def renew(self, depsgraph, view, space, seconds):
         """Bring what is loaded nearer to Blender's data: read it, or go on with what was read for about `seconds`.
         Where that fails, what was loaded stays, and `error` tells why until the scene is read again."""
         try:
-            if self.stale and not self._job and not self._update:
-                self._read(depsgraph, view, space)
-                self._job.wait(0.5 * seconds)  # it may be a small one, and then shows at once
-            if self._job and not self._job.wait(0.0):
+            if self._renewal and self._renewal.stopped and self._renewal.wait(0.0):
+                self._drop()
+            if self.stale and not self._renewal:
+                self._renewal = self._read(depsgraph, view, space)
+                self._renewal.wait(0.5 * seconds)  # it may be a small one, and then shows at once
+            if self._renewal and not self._renewal.wait(0.0):
                 _watch_jobs()
-            elif self._job:
-                job, self._job = self._job, None
-                self._update = job.result()
-            if self._update:
+            elif self._renewal:
                 self._upload(seconds)
         except Exception as error:  # raised, it would be so at every redraw
             self._drop()
-            self.error = self.explain(error)
+            self.error = explain(error, self.report)
             viewport_log.records.append(viewport_log.Load(error=self.error))
 
-    def explain(self, error):
-        """What a user is told of an exception. The traceback of one that is Conic's fault goes to the log."""
-        if is_defect(error):
-            self.report("ERROR", "".join(traceback.format_exception(error)))
-        return sentence_of(error)
-
     def _read(self, depsgraph, view, space):
-        """Read the scene, and begin to prepare it."""
+        """Read the scene, and begin to prepare it: the `Renewal`."""
         self.stale, self.error = False, ""
         self.report.begin()
-        self._reading, found = Statistics("Viewport"), SyncStatistics()
-        with timed(self._reading.seconds, "read"):
+        statistics, found = Statistics("Viewport"), SyncStatistics()
+        with timed(statistics.seconds, "read"):
             scene = self.reader.read(depsgraph, *view.size, camera=view.camera, space=space, statistics=found)
-        self._reading.add_reading(found)
-        self._job = Job(self.loaded.prepare, scene, sync_settings(depsgraph.scene_eval, True))
+        statistics.add_reading(found)
+        return Renewal(self.loaded, scene, sync_settings(depsgraph.scene_eval, True), statistics)
 
     def _upload(self, seconds):
         """Bring what was prepared to the GPU, or a part of it."""
-        if self.loaded.apply(self._update, 0.5 * seconds):
-            update, self._update = self._update, None
-            spent = {"read": self._reading.seconds["read"], **update.seconds}
+        if update := self._renewal.upload(0.5 * seconds):
+            statistics, self._renewal = self._renewal.statistics, None
+            spent = {"read": statistics.seconds["read"], **update.seconds}
             viewport_log.records.append(viewport_log.Load(update.change, dict(update.bytes), spent))
             if update.change != Change.NONE:
-                self.statistics = self._reading
+                self.statistics = statistics
             self.tag_redraw()  # viewports that have drawn already too
 
     def tag_redraw(self):
@@ -128,14 +125,21 @@ class ViewportScene:
 
     def _drop(self):
         """Forget what is under way."""
-        if self._update:
-            self.loaded.drop(self._update)
-        self._job = self._update = None
+        if self._renewal:
+            self._renewal.drop()
+        self._renewal = None
 
     def __del__(self):
         """Free what the GPU holds here and now: the last reference may be that of another thread."""
         self._drop()
         self.loaded.free()
+
+
+def explain(error, report):
+    """What a user is told of an exception. The traceback of one that is Conic's fault goes to the log."""
+    if is_defect(error):
+        report("ERROR", "".join(traceback.format_exception(error)))
+    return sentence_of(error)
 
 
 def scene_of(space, depsgraph, before=None):

@@ -7,10 +7,11 @@ import weakref
 
 from . import viewport_log
 from .engine import Session
+from .log_reporter import LogReporter
 from .statistics import primitives_text, publish
 from .viewport_display import Display
 from .viewport_picture import ViewportPicture
-from .viewport_scenes import scene_of
+from .viewport_scenes import explain, scene_of
 from .viewport_view import view_of
 from .wording import counted
 
@@ -43,9 +44,9 @@ class ViewportSession:
         """Draw into the bound frame buffer, and ask for another redraw while there is more to do."""
         started = time.perf_counter()
         settings = depsgraph.scene.conic
-        self._attach(context.space_data, depsgraph)
-        seconds = settings.preview_frame_seconds / (1 + self._others())
         try:
+            self._attach(context.space_data, depsgraph)
+            seconds = settings.preview_frame_seconds / (1 + self._others())
             view = view_of(context, depsgraph, self._engine().get_preview_pixel_size(depsgraph.scene))
             if not settings.preview_pause:
                 self.scene.renew(depsgraph, view, context.space_data, seconds)
@@ -57,7 +58,7 @@ class ViewportSession:
                 began = self._show(view, max(left, 0.3 * seconds), settings.preview_pause)
                 self._log(began, time.perf_counter() - started)
         except Exception as error:  # a view that raises would do so at every redraw
-            self.error = self.scene.explain(error)
+            self.error = explain(error, self.scene.report if self.scene else LogReporter())
             self.picture = None  # it may have ended half way: the next redraw begins anew
         self._tell(settings.preview_pause, time.perf_counter() - started)
 

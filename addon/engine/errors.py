@@ -9,5 +9,9 @@ class SceneError(ConicError):
     """A scene holds something that cannot be rendered; the message names it and says what to do."""
 
 
+class StoppedError(ConicError):
+    """Whoever asked for the work wants it no more."""
+
+
 class DeviceError(ConicError):
     """No GPU context, a shader that does not compile, or memory that cannot be had; the message says which and why."""

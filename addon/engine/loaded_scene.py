@@ -136,13 +136,13 @@ class LoadedScene:
 
     # The processor's part
 
-    def prepare(self, scene, settings):
+    def prepare(self, scene, settings, stopped=None):
         """The `Update` to a scene. It touches no GPU and may run in any thread, while sessions draw what is there; but
-        not while `apply` works on another update. It may be dropped."""
+        not while `apply` works on another update. It may be dropped. Raises StoppedError soon after `stopped()`."""
         if settings.outlines and settings.outlines.around == "ATTRIBUTE" and not scene.outline_attribute:
             raise SceneError("outlines go around the values of an attribute, but the scene does not say of which")
         residency = self.drawn.packed.residency if self.drawn else None
-        packed = pack(scene, self.device.max_texture_size, residency, keep=self.lasting)
+        packed = pack(scene, self.device.max_texture_size, residency, keep=self.lasting, stopped=stopped)
         digest = world_digest(packed) if settings.world_light != "NONE" else b""
         return Update(
             packed=packed,
@@ -166,7 +166,7 @@ class LoadedScene:
         light = before.world_light if world_digest == self._world_digest else world_digest or None
         if self._source(packed, settings, light)[0] != before.source:
             change |= Change.PROGRAM
-        return change | Change.FILM if change or settings != before.settings else change
+        return change | Change.FILM if change or not settings.draws_as(before.settings) else change
 
     def _source(self, packed, settings, world_light):
         """(Source, features) of the program: the one that is there if it can draw things that the scene has no more,

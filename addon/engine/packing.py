@@ -11,7 +11,7 @@ import numpy as np
 
 from . import instance_packing, layout
 from .changes import Change
-from .errors import SceneError
+from .errors import SceneError, StoppedError
 from .expression import is_zero
 from .image_packing import add_images
 from .light_packing import pack_all_lights
@@ -30,12 +30,13 @@ from .tree_packing import QUICK_FROM, AttributeWriter, TreePacker, pieces, rows_
 _BLOCKS = 256
 
 
-def pack(scene, max_texture_size, before=None, *, keep=False, quick=False):
+def pack(scene, max_texture_size, before=None, *, keep=False, quick=False, stopped=None):
     """Pack a scene for a device whose textures are at most `max_texture_size` wide and high.
 
     `before`: the `Residency` of the scene whose textures are there; what both share is not packed again. `keep`:
     whether to keep what makes later scenes that share much with this one cheap. `quick`: whether to build large trees
     quickly, at the price of slower rays. Packing the scene again, not quickly, with `before` of this one replaces them.
+    `stopped()` is asked now and then whether to raise StoppedError.
 
     Raises SceneError when the scene has no camera, refers to what does not exist, or does not fit; the latter before a
     tree is built.
@@ -45,9 +46,9 @@ def pack(scene, max_texture_size, before=None, *, keep=False, quick=False):
     seconds, limit = {}, layout.most_texels(max_texture_size)
     with timed(seconds, "build"):
         try:
-            packed = _Packer(scene, limit, before, keep, quick).pack()
+            packed = _Packer(scene, limit, before, keep, quick, stopped).pack()
         except _NoRoomError:
-            packed = _Packer(scene, limit, None, keep, quick).pack()
+            packed = _Packer(scene, limit, None, keep, quick, stopped).pack()
             packed.change |= Change.ALL_TEXTURES
             for upload in packed.uploads.values():
                 upload.anew = True
@@ -94,7 +95,8 @@ class _Packer:
     `before`: the `Residency` that the scene before left behind, None where there is nothing.
     """
 
-    def __init__(self, scene, limit, before, keep, quick):
+    def __init__(self, scene, limit, before, keep, quick, stopped):
+        self._stopped = stopped or (lambda: False)
         self.scene, self.limit, self.before = scene, limit, before or Residency()
         self.keep, self.quick = keep, quick
         self.numbers, self.there_is_more = self.before.numbers, before is not None
@@ -118,9 +120,10 @@ class _Packer:
         if plan.placed and not stand:
             self._instance_rows = self._take_rows()
         self._check_room()
-        trees.add(attributes, self._replaced_by)
+        trees.add(attributes, self._replaced_by, self._check_wanted)
         residency.geometries |= trees.settle()
         self._check_room()
+        self._check_wanted()
         self._add_attributes(written, attributes)
         with timed(trees.seconds, "instances"):
             self._instances(trees, attributes, stand)
@@ -166,6 +169,10 @@ class _Packer:
             tables=self.tables,
             table_texels=self.uploads["tables"].texels.reshape(-1, 4) if self.keep else None,
         )
+
+    def _check_wanted(self):
+        if self._stopped():
+            raise StoppedError("packing was stopped")
 
     def _check_room(self):
         if self.there_is_more and not self.residency.fits(self.limit):

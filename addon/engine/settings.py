@@ -1,6 +1,6 @@
 """How a picture is made, apart from what is in it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -71,6 +71,10 @@ class Settings:
     def strict(cls):
         """The rules of the Standard Procedural Databases, under which ray counts are published."""
         return cls(max_depth=5, weight_cutoff=0.0, corner_rays=True, count_rays=True)
+
+    def draws_as(self, other):
+        """Whether a sample is the same with both: of how many, matters only where it is one."""
+        return replace(self, samples=min(self.samples, 2)) == replace(other, samples=min(other.samples, 2))
 
     @property
     def samples_world(self):

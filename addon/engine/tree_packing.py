@@ -72,12 +72,15 @@ class TreePacker:
         """The origin as bytes that a geometry's primitives are moved by, empty for none."""
         return self._moved if self.plan.in_world[number] else b""
 
-    def add(self, attributes, replaced_by):
+    def add(self, attributes, replaced_by, check_wanted):
         """Write the records of all geometries, and their attributes by an `AttributeWriter`. `replaced_by`: from the
-        number of a geometry to the `Resident` whose tree may serve with new boxes, None where it must be built."""
+        number of a geometry to the `Resident` whose tree may serve with new boxes, None where it must be built.
+        `check_wanted()` is called now and then; it may raise."""
         for numbers in self._batches:
+            check_wanted()
             self._add_batch(numbers, attributes)
         for number in self._large.tolist():
+            check_wanted()
             self._add_large(number, attributes, replaced_by(number))
 
     def _add_large(self, number, attributes, replaced):

@@ -38,6 +38,7 @@ ALLOWED = 0.002  # part of the pixels: edges that tie
 
 screen = Screen()
 wrong = []
+blank = []  # whether each check's picture was
 
 
 def log(**line):
@@ -79,8 +80,8 @@ def check(step):
         wrong.append(f"step {step}: the viewport changed its size from {before.shape} to {after.shape}")
         return
     far = (np.abs(before.astype(int) - after).max(axis=-1) > DIFFERENT).mean()
-    blank = bool(after.std() < 0.5)
-    log(check=step, different=round(float(far), 5), blank=blank)
+    blank.append(bool(after.std() < 0.5))
+    log(check=step, different=round(float(far), 5), blank=blank[-1])
     if far > ALLOWED:
         wrong.append(f"step {step}: {100.0 * far:.2f} % of the pixels are stale, see check-{step}.npz")
         np.savez_compressed(FOLDER / f"check-{step}.npz", before=before, after=after)
@@ -155,6 +156,8 @@ def finish(step):
     np.save(FOLDER / "end.npy", (yield from picture()))
     bpy.ops.wm.save_as_mainfile(filepath=str(FOLDER / "end.blend"), copy=True)
     log(end=step)
+    if sum(blank) > 0.5 * len(blank):
+        wrong.append(f"{sum(blank)} of {len(blank)} checks compared blank pictures: they say nothing")
     tell()
 
 

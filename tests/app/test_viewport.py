@@ -6,25 +6,11 @@ import shutil
 import numpy as np
 import pytest
 
-from tests.app.viewport_scene import BLUE, GREEN, assert_only_turned, ball, log, middle, reset, scene_in_window
+from tests.app.viewport_scene import BLUE, GREEN, assert_only_turned, ball, log, middle
 
 pytestmark = pytest.mark.skipif(
     not (shutil.which("Xvfb") and shutil.which("xdotool")), reason="Xvfb or xdotool is not installed"
 )
-
-
-@pytest.fixture(scope="module")
-def window(registered, tmp_path_factory):
-    with scene_in_window(tmp_path_factory.mktemp("viewport")) as window:
-        yield window
-
-
-@pytest.fixture
-def rested(window):
-    """The window at rest, its log empty."""
-    reset(window)
-    window.move(*middle(window))
-    return window
 
 
 # Turning

@@ -110,3 +110,13 @@ def log(window):
 def assert_only_turned(found):
     """Every redraw of a moving view began anew and nothing was loaded."""
     assert not [load for load in found["loads"] if load[0] != "Change.NONE"]
+
+
+def changes(found):
+    """Names of the changes that were loaded."""
+    return [load[0].removeprefix("Change.") for load in found["loads"] if load[0] != "Change.NONE"]
+
+
+def far(before, after):
+    """How far a ball has moved, in pixels."""
+    return np.linalg.norm(np.subtract(before[:2], after[:2]))

@@ -91,6 +91,7 @@ EDITS_OF_NOTHING = {
     "make active": lambda: setattr(bpy.context.view_layer.objects, "active", of("Lamp")),
     "go to a frame": lambda: bpy.context.scene.frame_set(bpy.context.scene.frame_current + 1),
     "frame rate": lambda: in_scene("render.fps", 25),
+    "samples": lambda: in_scene("conic.preview_samples", 3),
     "samples of renders": lambda: in_scene("conic.samples", 33),
     "frame of the viewport": lambda: in_scene("conic.preview_frame_seconds", 0.3),
     "unused material": lambda: bpy.data.materials.new("Unused"),
@@ -112,6 +113,10 @@ def set_world_color(color):
     bpy.context.scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = color
 
 
+def test_one_sample_alone_is_drawn_otherwise(view):
+    assert change_of(view, lambda: in_scene("conic.preview_samples", 1))[0] & Change.FILM
+
+
 #: Name: (the change besides FILM, the edit). Nothing is uploaded that grows with the scene.
 SMALL_EDITS = {
     "color": (Change.MATERIALS, lambda: setattr(principled()["Base Color"], "default_value", (1.0, 0.0, 0.0, 1.0))),
@@ -127,7 +132,6 @@ SMALL_EDITS = {
     "hide a mesh": (Change.INSTANCES | Change.GEOMETRY, lambda: of("Sister").hide_set(True)),
     "show a mesh": (Change.INSTANCES | Change.GEOMETRY, lambda: of("Sister").hide_set(False)),
     "film without a sky": (Change.NONE, lambda: in_scene("render.film_transparent", True)),
-    "samples": (Change.NONE, lambda: in_scene("conic.preview_samples", 3)),
     "cut-off": (Change.NONE, lambda: in_scene("conic.weight_cutoff", 0.01)),
     "depth": (Change.PROGRAM, lambda: in_scene("conic.max_depth", 3)),
     "flat colors": (Change.PROGRAM, lambda: in_scene("conic.use_flat_colors", True)),

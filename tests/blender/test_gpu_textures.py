@@ -1,13 +1,17 @@
 """Textures of Blender's GPU that are changed in part: through the device, and through a scene that is updated."""
 
+from collections import OrderedDict
+
 import bpy
 import gpu
 import numpy as np
 import pytest
 
 from addon.engine import Camera, Geometry, Instances, Light, LoadedScene, Material, Scene, Session, Settings, Spheres
+from addon.engine.devices import blender_gpu
 from addon.engine.devices.blender_gpu import BlenderDevice
 from addon.engine.layout import DATA_WIDTH
+from addon.engine.shader_source import ProgramSource
 from addon.render_session import WindowDevice
 
 
@@ -81,3 +85,25 @@ def test_an_updated_scene_has_the_picture_of_a_fresh_one(device):
             session.free()
         assert np.array_equal(*pictures)
     loaded.free()
+
+
+def test_programs_that_nobody_asks_for_are_given_back_and_draw_until_then(device, monkeypatch):
+    monkeypatch.setattr(blender_gpu, "_PROGRAMS", OrderedDict())
+    monkeypatch.setattr(blender_gpu, "_MOST_PROGRAMS", 3)
+
+    def source(number):
+        text = f"void main() {{ out_color = vec4({number}.0); }}"
+        return ProgramSource("numbered", text, (), "", ("out_color",), ((f"{number}", 1),))
+
+    def drawn(program):
+        target = device.target(2, 2, 1)
+        device.draw(program, target, (0, 0, 2, 2), {}, np.zeros(4, np.float32))
+        return device.read(target, 0, (0, 0, 2, 2))
+
+    first = device.program(source(1))
+    assert (drawn(first) == 1.0).all()
+    for number in range(2, 9):
+        assert (drawn(device.program(source(number))) == number).all()
+        assert (drawn(device.program(source(2))) == 2).all()
+    assert set(blender_gpu._PROGRAMS) == {source(2), source(7), source(8)}
+    assert (drawn(first) == 1.0).all(), "it is kept by who draws with it"

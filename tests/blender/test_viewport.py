@@ -128,6 +128,24 @@ def test_a_first_picture_of_few_pixels_is_whole_and_finer_ones_follow(view):
     assert sum(draw.began for draw in draws()[count:]) == 1
 
 
+def test_more_samples_go_on_and_fewer_stop(view):
+    view.settle()
+    count = len(draws())
+    bpy.context.scene.conic.preview_samples = 5
+    more = view.settle()
+    assert view.engine.text.startswith("Sample 5/5") and draws()[-1].sample == 5
+    bpy.context.scene.conic.preview_samples = 3
+    view.settle()
+    assert view.engine.text.startswith("Sample 3/3") and draws()[-1].sample == 5, "what is drawn stays"
+    bpy.context.scene.conic.preview_samples = 5
+    assert np.array_equal(view.settle(), more)
+    assert not any(draw.began for draw in draws()[count:])
+    view.look_from(0.0, width=7.0)
+    view.settle()
+    view.look_from(0.0)
+    assert np.allclose(view.settle(), more, atol=1e-6), "as if it had had as many from the first"
+
+
 def test_the_first_picture_has_as_many_pixels_as_the_frame_allows(view):
     view.settle()
     picture, pixels = view.session.picture, WIDTH * HEIGHT
@@ -219,7 +237,7 @@ def test_pause_keeps_the_picture_and_turning_shows_a_coarse_one(view):
     assert draws()[-1].finished and "Paused" not in view.engine.text
 
 
-@pytest.mark.parametrize("name, value", [("preview_samples", 3), ("max_depth", 2), ("shadows", "OPAQUE")])
+@pytest.mark.parametrize("name, value", [("preview_samples", 1), ("max_depth", 2), ("shadows", "OPAQUE")])
 def test_a_setting_of_the_picture_is_a_change(view, name, value):
     view.settle()
     setattr(bpy.context.scene.conic, name, value)
@@ -372,6 +390,35 @@ def test_a_viewport_that_pauses_hears_once_of_what_has_been_prepared(view, monke
     assert viewport_scenes._look() is None and view.engine.redraws == before + 1
     bpy.context.scene.conic.preview_pause = False
     assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 + WIDTH / 6, abs=0.5)
+
+
+def test_what_an_undo_has_replaced_is_not_prepared_to_the_end(view, monkeypatch):
+    view.settle()
+    asked, gate = [], threading.Event()
+
+    def wait(*arguments, stopped, **settings):
+        assert gate.wait(60.0)
+        asked.append(stopped())
+        return pack(*arguments, stopped=stopped, **settings)
+
+    monkeypatch.setattr(loaded_scene, "pack", wait)
+    bpy.context.object.location.x = 1.0
+    view.redraw()
+    viewport_scenes._begin_replacing()
+    viewport_scenes._end_replacing()
+    bpy.context.object.location.x = -1.0
+    gate.set()
+    assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 - WIDTH / 6, abs=0.5)
+    assert asked == [True, False] and not any(load.error for load in loads())
+
+
+def test_a_viewport_without_a_gpu_says_so(view, monkeypatch):
+    def scene_of(*_arguments):
+        raise DeviceError("Blender has no GPU context here")
+
+    monkeypatch.setattr(viewport_session, "scene_of", scene_of)
+    assert not view.redraw()
+    assert view.engine.text == "Blender has no GPU context here"
 
 
 def test_what_is_prepared_for_nobody_keeps_nothing_on_the_gpu(view, monkeypatch):

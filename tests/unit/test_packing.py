@@ -7,7 +7,7 @@ import pytest
 
 from addon.engine import layout
 from addon.engine.changes import Change
-from addon.engine.errors import SceneError
+from addon.engine.errors import SceneError, StoppedError
 from addon.engine.material import surface_image
 from addon.engine.packing import pack
 from addon.engine.primitives import Cylinders, Planes, Spheres, Triangles
@@ -290,6 +290,19 @@ def test_lights_planes_and_instances_move_with_the_origin():
     places = np.stack([placed[f"to_world_{axis}"][:, 3] for axis in "xyz"], axis=-1)
     assert any(np.allclose(place, np.add(offset, [0, 2.0, 0]) - packed.origin) for place in places)
     assert any(np.allclose(place, 0.0) for place in places), "the world's shapes are moved themselves"
+
+
+def test_packing_stops_between_geometries():
+    asked = []
+
+    def stopped():
+        asked.append(True)
+        return len(asked) > 1
+
+    blocks = [Instances(Geometry(spheres(5)), np.eye(4)[None]) for _ in range(3)]
+    with pytest.raises(StoppedError):
+        pack(scene_of(spheres(5), instances=blocks), LIMIT, stopped=stopped)
+    assert len(asked) == 2
 
 
 # What is refused

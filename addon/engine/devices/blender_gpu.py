@@ -5,6 +5,7 @@ import os
 import re
 import sys
 import tempfile
+from collections import OrderedDict
 
 import numpy as np
 
@@ -17,9 +18,21 @@ _VERTEX = "void main() { gl_Position = vec4(position, 0.0, 1.0); }"
 
 _COPY = "copy_texels_frag.glsl"
 
-#: Programs by source. They live as long as Blender: one that is freed while bound makes later draws use it (see the
-#: manual of the gpu module: programs are told apart by their address).
-_PROGRAMS = {}
+#: Programs by source, the one that was asked for last at the end: undo, other scenes and previews of materials come
+#: back to them. None is left bound after a draw: Blender tells programs apart by their address, and would take a new
+#: one for one that was freed while bound.
+_PROGRAMS = OrderedDict()
+_MOST_PROGRAMS = 64  # each edit of a node tree may make one
+
+
+def _program(source, compiled):
+    """The program of a source; `compiled` makes it where it is not there."""
+    if source not in _PROGRAMS:
+        _PROGRAMS[source] = compiled()
+        while len(_PROGRAMS) > _MOST_PROGRAMS:  # whoever draws with it keeps it until then
+            _PROGRAMS.popitem(last=False)
+    _PROGRAMS.move_to_end(source)
+    return _PROGRAMS[source]
 
 
 def free_programs():
@@ -79,7 +92,7 @@ class BlenderDevice:
 
     def _copy(self, source, texture, first, count):
         """Copy the first `count` texels of `source` to number `first` and on of `texture`."""
-        shader, batch = self._copy_program()
+        shader, batch = _program(_COPY, self._compiled_copy)
         width, last = texture.width, first + count - 1
         state = self._gpu.state
         with self._gpu.types.GPUFrameBuffer(color_slots=[texture]).bind():
@@ -93,22 +106,21 @@ class BlenderDevice:
                     shader.uniform_int(name, value)
                 batch.draw(shader)
             finally:
+                self._gpu.shader.unbind()
                 state.scissor_test_set(False)
         self._copied = source  # until the next copy: the GPU may not have read it yet
 
-    def _copy_program(self):
-        if _COPY not in _PROGRAMS:
-            info = self._gpu.types.GPUShaderCreateInfo()
-            info.vertex_in(0, "VEC2", "position")
-            info.sampler(0, "FLOAT_2D", "texels_data")
-            for name in ("into_first", "into_width", "count"):
-                info.push_constant("INT", name)
-            info.fragment_out(0, "VEC4", "out_texel")
-            info.vertex_source(_VERTEX)
-            info.fragment_source((SHADER_FOLDER / _COPY).read_text(encoding="utf-8"))
-            shader = self._gpu.shader.create_from_info(info)
-            _PROGRAMS[_COPY] = shader, self._batch_for_shader(shader, "TRIS", {"position": FULL_SCREEN_TRIANGLE})
-        return _PROGRAMS[_COPY]
+    def _compiled_copy(self):
+        info = self._gpu.types.GPUShaderCreateInfo()
+        info.vertex_in(0, "VEC2", "position")
+        info.sampler(0, "FLOAT_2D", "texels_data")
+        for name in ("into_first", "into_width", "count"):
+            info.push_constant("INT", name)
+        info.fragment_out(0, "VEC4", "out_texel")
+        info.vertex_source(_VERTEX)
+        info.fragment_source((SHADER_FOLDER / _COPY).read_text(encoding="utf-8"))
+        shader = self._gpu.shader.create_from_info(info)
+        return shader, self._batch_for_shader(shader, "TRIS", {"position": FULL_SCREEN_TRIANGLE})
 
     def target(self, width, height, attachments):
         try:
@@ -121,19 +133,19 @@ class BlenderDevice:
         return target
 
     def program(self, source):
-        if source not in _PROGRAMS:
-            info = self._create_info(source)
-            try:
-                with _captured_output() as captured:
-                    shader = self._gpu.shader.create_from_info(info)
-            except Exception as error:  # gpu raises a bare Exception; the driver's log goes to the console
-                log = captured.text or str(error)
-                number = re.search(r":(\d+):\d+", log)
-                line = int(number.group(1)) if number else 0
-                raise DeviceError(describe_compile_error(source, log, line)) from error
-            batch = self._batch_for_shader(shader, "TRIS", {"position": FULL_SCREEN_TRIANGLE})
-            _PROGRAMS[source] = (source, shader, batch)
-        return _PROGRAMS[source]
+        return _program(source, lambda: self._compiled(source))
+
+    def _compiled(self, source):
+        info = self._create_info(source)
+        try:
+            with _captured_output() as captured:
+                shader = self._gpu.shader.create_from_info(info)
+        except Exception as error:  # gpu raises a bare Exception; the driver's log goes to the console
+            log = captured.text or str(error)
+            number = re.search(r":(\d+):\d+", log)
+            line = int(number.group(1)) if number else 0
+            raise DeviceError(describe_compile_error(source, log, line)) from error
+        return source, shader, self._batch_for_shader(shader, "TRIS", {"position": FULL_SCREEN_TRIANGLE})
 
     def _create_info(self, source):
         info = self._gpu.types.GPUShaderCreateInfo()
@@ -173,12 +185,10 @@ class BlenderDevice:
                     bind(f"{name}_data", textures[name])
                 batch.draw(shader)
             finally:
+                self._gpu.shader.unbind()
                 state.blend_set("NONE")
                 state.scissor_test_set(False)
-        target.keep = (
-            block,
-            textures,
-        )  # until the next draw has replaced them: the GPU may not have read them yet
+        target.keep = block, textures  # until the next draw has replaced them: the GPU may not have read them yet
 
     def attachment(self, target, attachment):
         return target.colors[attachment]

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene on its way to a viewport, from what was read of Blender's data to the GPU."""
+
+import threading
+
+from .background_job import Job
+
+
+class Renewal:
+    """Takes the place of what a `LoadedScene` has: another thread prepares it, then `upload` brings it to the GPU, a
+    part at a time. Use it in the main thread. `statistics`: of this reading."""
+
+    def __init__(self, loaded, scene, settings, statistics):
+        self.statistics = statistics
+        self._loaded = loaded
+        self._stop = threading.Event()
+        self._job = Job(loaded.prepare, scene, settings, self._stop.is_set)
+        self._update = None  # what was prepared, once it is on its way to the GPU
+
+    @property
+    def preparing(self):
+        """Whether another thread works, or has done so, on what the first `upload` takes."""
+        return self._update is None
+
+    @property
+    def stopped(self):
+        """Whether it is to be dropped, once it is prepared: the next one may not be prepared at the same time."""
+        return self._stop.is_set()
+
+    def wait(self, seconds):
+        """Wait until it is prepared, for at most `seconds`; whether it is."""
+        return self._job.wait(seconds)
+
+    def upload(self, seconds):
+        """Bring it to the GPU for about `seconds`; the `Update` once all of it is there, else None. Raises what
+        preparing it has raised."""
+        self._update = self._update or self._job.result()
+        return self._update if self._loaded.apply(self._update, seconds) else None
+
+    def stop(self):
+        """Nobody wants it any more: have the other thread end soon."""
+        self._stop.set()
+
+    def drop(self):
+        """Give back what of it is on the GPU already. Call it where the GPU context is active."""
+        self.stop()
+        if self._update:
+            self._loaded.drop(self._update)
