@@ -427,7 +427,7 @@ KINDS = ("sphere", "cylinder", "cone", "disc", "triangle", "instance", "plane")
 #: Third number of a sphere's `rotation` where the other two are the uv of all of it: no rotation is as long.
 FIXED_UV = 4.0
 
-#: A reference to a child of a node is one integer of 32 bits: its index, and above that what it is, 0 for an inner node.
+#: A reference to a child of a node is one integer of 32 bits: its index, above that what it is, 0 for an inner node.
 INDEX_BITS = 26
 COUNT_BITS = 3
 MAX_LEAF_SIZE = 1 << COUNT_BITS
@@ -445,6 +445,14 @@ def pack_leaf(kind, count, index_high):
     (0: an inner node) and the high part of the index."""
     holds = np.where(np.asarray(count) > 0, 1 + (np.asarray(kind) << COUNT_BITS) + np.asarray(count) - 1, 0)
     return np.asarray(index_high) + (holds << (INDEX_BITS - LOW_BITS))
+
+
+def unpack_leaf(leaf):
+    """(kind, count, index_high) that `pack_leaf` was given; the kind of an inner node is of no meaning."""
+    leaf = np.asarray(leaf).astype(np.int64)
+    holds = leaf >> (INDEX_BITS - LOW_BITS)
+    kind, count = np.divmod(holds - 1, MAX_LEAF_SIZE)
+    return kind, np.where(holds > 0, count + 1, 0), leaf & ((1 << (INDEX_BITS - LOW_BITS)) - 1)
 
 
 def most_texels(max_texture_size):

@@ -57,6 +57,7 @@ def fetch(texture):
 
 def constants():
     """GLSL defines that go with the packing of nodes and indices."""
+    leaf_mask = (1 << 32 - layout.INDEX_BITS) - 1
     kinds = "".join(f"#define KIND_{kind.upper()} {number}\n" for number, kind in enumerate(layout.KINDS))
     return (
         f"{kinds}"
@@ -64,7 +65,7 @@ def constants():
         f"#define REFERENCE(first, leaf) ((first) + ((leaf) << {layout.LOW_BITS}))\n"
         f"#define REFERENCE_INDEX(reference) ((reference) & {(1 << layout.INDEX_BITS) - 1})\n"
         f"#define REFERENCE_IS_INNER(reference) (((reference) >> {layout.INDEX_BITS}) == 0)\n"
-        f"#define LEAF_OF(reference) ((((reference) >> {layout.INDEX_BITS}) & {(1 << 32 - layout.INDEX_BITS) - 1}) - 1)\n"
+        f"#define LEAF_OF(reference) ((((reference) >> {layout.INDEX_BITS}) & {leaf_mask}) - 1)\n"
         f"#define LEAF_KIND(leaf) ((leaf) >> {layout.COUNT_BITS})\n"
         f"#define LEAF_COUNT(leaf) (((leaf) & {layout.MAX_LEAF_SIZE - 1}) + 1)\n"
         f"#define JOIN_INDEX(low, high) ((low) + ((high) << {layout.LOW_BITS}))\n"

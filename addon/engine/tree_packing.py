@@ -384,9 +384,8 @@ def move_nodes(records, offset):
     for rows in pieces(len(records)):
         piece = records[rows]
         for child in (0, 1):
-            leaf = piece[f"leaf_{child}"].astype(np.int64)
-            inner = leaf < 1 << layout.INDEX_BITS - layout.LOW_BITS
-            high = np.where(inner, leaf, 0)
+            _, count, high = layout.unpack_leaf(piece[f"leaf_{child}"])
+            inner = count == 0
             low, high = layout.split_index(
                 piece[f"first_{child}"].astype(np.int64) + (high << layout.LOW_BITS) + offset
             )

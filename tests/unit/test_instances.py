@@ -182,7 +182,8 @@ def test_a_hundred_thousand_are_all_there():
     expected = matrices_of(count)[:, :3].astype(np.float32)
     assert (np.sort(there[:, 0, 3]) == np.sort(expected[:, 0, 3])).all()
     nodes = layout.records_of(packed.textures["nodes"], layout.NODE)[: count - 1]
-    leaves = np.concatenate([nodes[f"first_{c}"][nodes[f"leaf_{c}"] % 256 == 8 + 5] for c in (0, 1)])
+    kind = layout.KINDS.index("instance")
+    leaves = np.concatenate([nodes[f"first_{c}"][nodes[f"leaf_{c}"] == layout.pack_leaf(kind, 1, 0)] for c in (0, 1)])
     assert (np.sort(leaves.astype(int)) == np.arange(count)).all()
 
 

@@ -71,6 +71,7 @@ def test_no_name_is_given_twice():
         names = [field.name for field in record.fields]
         assert len(set(names)) == len(names), record.name
 
+
 INDEX_HIGH_BITS = layout.INDEX_BITS - layout.LOW_BITS
 
 
@@ -94,9 +95,14 @@ def test_references_survive_float32():
     kind, count, high = (
         a.ravel() for a in np.meshgrid(range(last + 1), range(1, layout.MAX_LEAF_SIZE + 1), range(1 << INDEX_HIGH_BITS))
     )
-    leaf = np.concatenate([layout.pack_leaf(kind, count, high), layout.pack_leaf(0, 0, np.arange(1 << INDEX_HIGH_BITS))])
+    inner = layout.pack_leaf(0, 0, np.arange(1 << INDEX_HIGH_BITS))
+    leaf = np.concatenate([layout.pack_leaf(kind, count, high), inner])
     assert len(np.unique(leaf)) == len(leaf) and 0 <= leaf.min() and leaf.max() < 2 ** (32 - layout.LOW_BITS)
-    assert (leaf.astype(np.float32) == leaf).all()
+    stored = leaf.astype(np.float32)
+    assert (stored == leaf).all()
+    for found, given in zip(layout.unpack_leaf(stored[: len(kind)]), (kind, count, high), strict=True):
+        assert np.array_equal(found, given)
+    assert (layout.unpack_leaf(inner)[1] == 0).all() and np.array_equal(layout.unpack_leaf(inner)[2], range(len(inner)))
 
 
 def test_a_kind_s_number_is_its_label():

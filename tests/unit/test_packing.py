@@ -59,11 +59,10 @@ def leaves_below(packed, root):
         assert index not in seen, "a node is reached twice"
         seen.add(index)
         for child in (0, 1):
-            leaf = int(nodes[f"leaf_{child}"][index])
-            first = int(nodes[f"first_{child}"][index]) + ((leaf >> 8) << 24)
-            kind, count = layout.KINDS[leaf & 7], (leaf >> 3) & 31
+            kind, count, high = map(int, layout.unpack_leaf(nodes[f"leaf_{child}"][index]))
+            first = int(nodes[f"first_{child}"][index]) + (high << layout.LOW_BITS)
             if count:
-                yield kind, first, count
+                yield layout.KINDS[kind], first, count
             elif nodes[f"lower_{child}"][index][0] < 1e38:
                 todo.append(first)
 

@@ -167,7 +167,7 @@ class HeadlessDevice:
     def _declarations(self, source):
         images = loaded_as_images(source, self.name)
         textures = "".join(f"#define {name} {value}\n" for name, value in texel_readers(source, images))
-        for unit, name in enumerate(source.textures):
+        for name in source.textures:
             if name in images:
                 textures += f"layout(rgba32f, binding = {images.index(name)}) readonly uniform image2D {name}_data;\n"
             else:
