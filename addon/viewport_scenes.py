@@ -30,7 +30,8 @@ class ViewportScene:
     """Blender's scene as viewports show it, read again when it has changed. Use it where the GPU context is active.
 
     `loaded`: the engine's `LoadedScene`. A change takes three parts: reading, here and now; preparing, in another
-    thread; and bringing it to the GPU, a little at each redraw. Meanwhile viewports draw what was loaded before.
+    thread; and bringing it to the GPU, a little at each redraw. Meanwhile viewports draw what was loaded before. Large
+    trees are built quickly first; once a picture is there, good ones take their place, by the latter two parts.
     """
 
     def __init__(self):
@@ -45,6 +46,7 @@ class ViewportScene:
         self.sessions = weakref.WeakSet()  # the viewports that show it
         self._reading = None  # statistics of what is being prepared
         self._job = self._update = None  # what is being prepared; what is being brought to the GPU
+        self._better = None  # good trees that are being prepared for what is drawn, or was
 
     @property
     def ready(self):
@@ -54,17 +56,19 @@ class ViewportScene:
     @property
     def preparing(self):
         """Whether another thread works, or has done so, on what the next `renew` takes."""
-        return self._job is not None
+        return self._job is not None or self._better is not None
 
     @property
     def prepared(self):
         """Whether the next `renew` has something to do at once."""
-        return self._update is not None or (self._job.wait(0.0) if self._job else self.stale)
+        if self._update or self._job:
+            return self._update is not None or self._job.wait(0.0)
+        return self.stale or (self._better is not None and self._better.wait(0.0))
 
     @property
     def settled(self):
         """Whether what is loaded is what there is."""
-        return not (self.stale or self._job or self._update)
+        return not (self.stale or self._job or (self._update and not self._update.improves))
 
     def mark(self, depsgraph):
         """Blender says that something changed."""
@@ -76,24 +80,42 @@ class ViewportScene:
         self.stale = True
         self.reader.forget()
 
-    def renew(self, depsgraph, view, space, seconds):
+    def renew(self, depsgraph, view, space, seconds, patience):
         """Bring what is loaded nearer to Blender's data: read it, or go on with what was read for about `seconds`.
-        Where that fails, what was loaded stays, and `error` tells why until the scene is read again."""
+        What takes no longer than `patience` to prepare shows at once. Where that fails, what was loaded stays, and
+        `error` tells why until the scene is read again."""
         try:
+            if self.stale and self._update and self._update.improves:
+                self._drop_update()
             if self.stale and not self._job and not self._update:
                 self._read(depsgraph, view, space)
-                self._job.wait(0.5 * seconds)  # it may be a small one, and then shows at once
+                self._job.wait(patience)
             if self._job and not self._job.wait(0.0):
                 _watch_jobs()
             elif self._job:
                 job, self._job = self._job, None
                 self._update = job.result()
+            elif not self._update:
+                self._take_better()
             if self._update:
                 self._upload(seconds)
         except Exception as error:  # raised, it would be so at every redraw
             self._drop()
             self.error = self.explain(error)
             viewport_log.records.append(viewport_log.Load(error=self.error))
+
+    def improve(self):
+        """Begin to build good trees in the place of those that were built quickly, if nothing else is to be done."""
+        if self.loaded.can_improve and self.settled and not (self._better or self._update or self.error):
+            self._better = Job(self.loaded.prepare_better)
+            _watch_jobs()
+
+    def _take_better(self):
+        """Take the good trees that have been built, if they are those of what is drawn."""
+        if self._better and self._better.wait(0.0):
+            better, self._better = self._better, None
+            update = better.result()
+            self._update = update if update.before is self.loaded.drawn else None
 
     def explain(self, error):
         """What a user is told of an exception. The traceback of one that is Conic's fault goes to the log."""
@@ -109,15 +131,15 @@ class ViewportScene:
         with timed(self._reading.seconds, "read"):
             scene = self.reader.read(depsgraph, *view.size, camera=view.camera, space=space, statistics=found)
         self._reading.add_reading(found)
-        self._job = Job(self.loaded.prepare, scene, sync_settings(depsgraph.scene_eval, True))
+        self._job = Job(self.loaded.prepare, scene, sync_settings(depsgraph.scene_eval, True), True)
 
     def _upload(self, seconds):
         """Bring what was prepared to the GPU, or a part of it."""
         if self.loaded.apply(self._update, 0.5 * seconds):
             update, self._update = self._update, None
-            spent = {"read": self._reading.seconds["read"], **update.seconds}
-            viewport_log.records.append(viewport_log.Load(update.change, dict(update.bytes), spent))
-            if update.change != Change.NONE:
+            spent = {} if update.improves else {"read": self._reading.seconds["read"]}
+            viewport_log.records.append(viewport_log.Load(update.change, dict(update.bytes), spent | update.seconds))
+            if update.change & Change.FILM:
                 self.statistics = self._reading
             self.tag_redraw()  # viewports that have drawn already too
 
@@ -128,9 +150,13 @@ class ViewportScene:
 
     def _drop(self):
         """Forget what is under way."""
-        if self._update:
-            self.loaded.drop(self._update)
-        self._job = self._update = None
+        self._drop_update()
+        self._job = self._better = None
+
+    def _drop_update(self):
+        update, self._update = self._update, None
+        if update:
+            self.loaded.drop(update)
 
     def __del__(self):
         """Free what the GPU holds here and now: the last reference may be that of another thread."""

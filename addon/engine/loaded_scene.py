@@ -275,8 +275,10 @@ class LoadedScene:
         self.drawn, update.before, update.made = drawn, drawn, []
         self.warnings, self.seconds = update.warnings, update.seconds
         self.version += bool(update.change & Change.FILM)
-        kept = set(map(id, drawn.textures.values()))
-        self._release([texture for texture in before.textures.values() if id(texture) not in kept] if before else [])
+        if before:
+            textures, before.textures = before.textures, {}
+            kept = set(map(id, drawn.textures.values()))
+            self._release([texture for texture in textures.values() if id(texture) not in kept])
 
     def _world_light(self, update, new):
         """The `WorldLight` of an update; its texture is uploaded where samples need it."""
@@ -297,8 +299,8 @@ class LoadedScene:
         return {name: 16 * room for name, room in self.drawn.rooms.items()} if self.drawn else {}
 
     def free(self):
-        """Give back the textures, here and now: the thread of a `prepare` that nobody waits for does not keep them.
-        Programs stay with the device."""
+        """Give back the textures, here and now: the thread of a `prepare` that nobody waits for does not keep them, as
+        it does the `DrawnScene`. Programs stay with the device."""
         if self.drawn:
             textures, self.drawn.textures = self.drawn.textures, {}
             self._release(list(textures.values()))
