@@ -145,7 +145,7 @@ def test_the_first_picture_has_as_many_pixels_as_the_frame_allows(view):
         (20.0, 4, 8),
         (1e6, 1, STEPS[-1]),
     ):
-        picture._seconds_per_pixel, picture._first_step = spent / pixels, before
+        picture.session.pace._costs[:], picture._first_step = spent / pixels, before
         assert picture._choose_step(1.0) == step, (spent, before)
 
 
@@ -167,6 +167,29 @@ def test_the_display_divides_what_the_film_sums_up(view, outlines):
     assert len(seen) > 1
 
 
+def test_what_forms_has_no_dark_rim(view):
+    """A coarse film is smooth where it is, whatever is to come beside it."""
+    view.settle()
+    bpy.context.object.hide_viewport = True  # all is the bright sky
+    bpy.context.scene.conic.preview_frame_seconds = 0.001
+    view.settle()
+    view.look_from(0.5)
+    view.redraw()
+    picture = view.session.picture
+    picture._start(4)
+    picture.session._film.pace._costs[:] = 1.0
+    for _ in range(3):
+        picture.session.step(1e-9, tile_seconds=1e-9)
+    assert picture.session.film.reached[3] > 0, "it stops within a row"
+    layer = picture._layer()
+    with view.framebuffer.bind():
+        view.framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0))
+        view.session.display.draw([layer], picture.view)
+    pixels = view.pixels()
+    drawn = pixels[..., 3] > 0.0
+    assert 0 < drawn.sum() < drawn.size and pixels[drawn].min() > 0.99
+
+
 def test_large_pixels(view):
     view.engine.pixel_size = 4
     pixels = view.settle()
@@ -180,7 +203,7 @@ def test_what_was_seen_before_is_shown_where_it_is_still_right(view, change):
     """With a first picture of few pixels, the old one is as sharp as before, in its new place."""
     view.settle()
     bpy.context.scene.conic.preview_frame_seconds = 0.001
-    view.session.picture._seconds_per_pixel = 1.0
+    view.session.picture.session.pace._costs[:] = 1.0
     view.settle()
     if change == "pan":
         view.look_from(1.0)
