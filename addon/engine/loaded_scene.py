@@ -248,8 +248,7 @@ class LoadedScene:
             yield from new.add(name, upload)
             del upload
         yield
-        with timed(update.seconds, "upload"):
-            light = self._world_light(update, new)
+        light = yield from self._world_light(update, new)
         yield
         with timed(update.seconds, "compile"):
             source, features = self._source(before, packed, update.settings, light)
@@ -281,12 +280,12 @@ class LoadedScene:
             self._release([texture for texture in textures.values() if id(texture) not in kept])
 
     def _world_light(self, update, new):
-        """The `WorldLight` of an update; its texture is uploaded where samples need it."""
+        """Make the `WorldLight` of an update, step by step; its texture is uploaded where samples need it."""
         before, digest = update.before, update.world_digest
         if before and digest == before.world_digest:
             light = before.world_light
         else:
-            light = light_of_world(self.device, update.packed, new.textures) if digest else None
+            light = (yield from light_of_world(self.device, update.packed, new.textures)) if digest else None
         if not (light and update.settings.samples_world):
             new.leave_out("world_light")
         elif "world_light" not in new.textures or light is not before.world_light:
