@@ -104,8 +104,12 @@ class ViewportScene:
             self.error = self.explain(error)
             viewport_log.records.append(viewport_log.Load(error=self.error))
 
-    def improve(self):
-        """Begin to build good trees in the place of those that were built quickly, if nothing else is to be done."""
+    def improve(self, view):
+        """A picture of a `View` is there. If nothing else is to be done, cut strands finer that are too coarse for it,
+        and build good trees in the place of those that were built quickly."""
+        if self.settled and not self.error and self.reader.is_too_coarse(view.camera, view.size[1]):
+            self.stale = True
+            self.tag_redraw()
         if self.loaded.can_improve and self.settled and not (self._better or self._update or self.error):
             self._better = Job(self.loaded.prepare_better)
             _watch_jobs()

@@ -108,7 +108,7 @@ class ViewportSession:
         if not picture.finished and not paused:
             self.tag_redraw()
         if picture.sample and not paused:
-            self.scene.improve()
+            self.scene.improve(view)
         return began
 
     def _log(self, began, seconds):

@@ -610,3 +610,23 @@ def test_redraws_take_longer_where_nothing_happens_and_blender_takes_its_time(mo
     now[0] += 5.0
     pace.begin()
     assert pace.overhead < 0.01, "nobody asked for this one: it was no pause"
+
+
+def test_strands_are_cut_finer_where_the_view_comes_near(view):
+    def pieces():
+        return view.session.scene.loaded.drawn.packed.statistics["primitives"]["cylinder"]
+
+    bpy.ops.curve.primitive_bezier_circle_add(radius=2.0)
+    bpy.context.object.conic.strand_radius = 0.01
+    view.settle()
+    few, count = pieces(), len(loads())
+    view.look_from(0.0, width=4.0)
+    view.settle()
+    assert len(loads()) == count, "they are fine enough"
+    view.look_from(0.0, width=0.3)
+    view.settle()
+    assert len(loads()) == count + 1 and pieces() > 2 * few
+    view.look_from(0.0)
+    view.settle()
+    assert len(loads()) == count + 1, "finer ones do no harm"
+    assert not view.redraw()
