@@ -28,6 +28,8 @@ from .tree_packing import QUICK_FROM, AttributeWriter, TreePacker, pieces, rows_
 
 #: Levels that a good tree may have more than a quick one without another program.
 _DEEPER = 6
+#: Blocks of instances that are checked together, where they are small.
+_BLOCKS = 256
 
 
 def pack(scene, max_texture_size, before=None, *, keep=False, quick=False):
@@ -65,13 +67,16 @@ def _check_matrices(scene, before):
     if not np.isfinite(scene.camera.window).all() or left == right or bottom == top:
         raise SceneError(f"the camera's window {tuple(scene.camera.window)} has no width or no height")
     known = {id(placed()) for placed in before.instances.placed} if before.instances else ()
-    for placed in scene.instances:
-        if id(placed) in known:
+    new = [placed for placed in scene.instances if id(placed) not in known]
+    for start in range(0, len(new), _BLOCKS):
+        blocks = new[start : start + _BLOCKS]
+        if max(map(len, blocks)) < _BLOCKS and invertible(np.concatenate([placed.matrices for placed in blocks])).all():
             continue
-        if not all(invertible(placed.matrices[rows]).all() for rows in pieces(len(placed))):
-            raise SceneError(
-                f"instance {placed.name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
-            )
+        for placed in blocks:
+            if not all(invertible(placed.matrices[rows]).all() for rows in pieces(len(placed))):
+                raise SceneError(
+                    f"instance {placed.name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
+                )
 
 
 def _bounds_of(top, trees):
@@ -115,8 +120,7 @@ class _Packer:
         if plan.placed and not stand:
             self._instance_rows = self._take_rows()
         self._check_room()
-        for number in written.tolist():
-            trees.add(number, attributes, self._replaced_by(number))
+        trees.add(attributes, self._replaced_by)
         residency.geometries |= trees.settle()
         self._check_room()
         self._add_attributes(written, attributes)

@@ -5,14 +5,17 @@ the scene is held in between, whatever the precision of the arithmetic.
 """
 
 import weakref
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 
 from . import bvh, layout
+from .batches import batches, joined
 from .errors import SceneError
 from .primitives import BY_KIND, Similarity
 from .residency import BuiltTree, KeptTree, Resident, Upload
+from .threads import LARGE, each
 from .timing import timed
 
 #: How much larger boxes are stored than they are, relative to the largest of their coordinates: what the intersection
@@ -24,14 +27,12 @@ _BOX_PADDING_ABSOLUTE = 1e-20
 _LEAF_SIZE = 8
 _INTERSECTION_COST = np.array([cls.intersection_cost for cls in BY_KIND], np.float32)
 
-#: Trees of so many primitives are kept for refits: smaller ones are built in no time.
+#: Trees of so many primitives are kept for refits: smaller ones are built in no time, many at once.
 _WORTH_KEEPING = 4096
 #: Trees of fewer primitives are never built quickly: good ones take no time.
 QUICK_FROM = 1 << 14
 #: A refitted tree that costs so much more than a built one is built.
 WORN = 1.3
-#: Of so many trees at once the cost of each is worth knowing.
-_FEW_TREES = 64
 
 #: Rows worked on at a time: their temporary arrays stay in the processor's cache.
 _PIECE = 1 << 15
@@ -52,8 +53,9 @@ class TreePacker:
         self._added = {}
         self._move = Similarity(np.eye(3), 1.0, -origin) if origin.any() else None
         self._moved = origin.tobytes() if origin.any() else b""
-        self._are_few = len(numbers) <= _FEW_TREES
+        self._batches, self._large = batches(plan, numbers, _WORTH_KEEPING)
         self.bases = np.zeros(plan.counts.shape, np.int64)
+        numbers = np.concatenate([*self._batches, self._large])  # those of a batch lie one after the other
         for number in np.setdiff1d(plan.built, numbers).tolist():
             self.trees[number] = residency.geometries[number].tree
             self.bases[number] = residency.geometries[number].bases
@@ -70,9 +72,15 @@ class TreePacker:
         """The origin as bytes that a geometry's primitives are moved by, empty for none."""
         return self._moved if self.plan.in_world[number] else b""
 
-    def add(self, number, attributes, replaced=None):
-        """Write the records of a geometry, and its attributes by an `AttributeWriter`. `replaced`: the `Resident` whose
-        tree may serve with new boxes, None where it must be built."""
+    def add(self, attributes, replaced_by):
+        """Write the records of all geometries, and their attributes by an `AttributeWriter`. `replaced_by`: from the
+        number of a geometry to the `Resident` whose tree may serve with new boxes, None where it must be built."""
+        for numbers in self._batches:
+            self._add_batch(numbers, attributes)
+        for number in self._large.tolist():
+            self._add_large(number, attributes, replaced_by(number))
+
+    def _add_large(self, number, attributes, replaced):
         geometry = self.plan.geometries[number]
         parts = dict(geometry.kinds())
         move = self._move if self.plan.in_world[number] else None
@@ -86,18 +94,72 @@ class TreePacker:
         with timed(self.seconds, "records"):
             for label, part, order in rows_by_kind(tree, parts):
                 attributes.write((number, label), part, order)
-            self.trees[number] = self._add_nodes(number, tree, cost)
+            root = self._add_nodes(number, tree)
+        self._added_one(number, BuiltTree(tree.bounds, root, len(tree), tree.depth, cost), attributes, kept, quick)
+
+    def _added_one(self, number, tree, attributes, kept=None, quick=False):
+        geometry = self.plan.geometries[number]
+        self.trees[number] = tree
         self._added[number] = Resident(
             weakref.ref(geometry),
             geometry.token,
             self.moved(number),
             self.bases[number].copy(),
             self.plan.counts[number].copy(),
-            self.trees[number],
+            tree,
             attributes.ranges(number),
             kept,
             quick,
         )
+
+    def _add_batch(self, numbers, attributes):
+        """As `_add_large` of many geometries of few primitives each."""
+        move = self._move if self.plan.in_world[numbers[0]] else None
+        with timed(self.seconds, "bounds"):
+            parts, rows = joined([self.plan.geometries[number] for number in numbers], self.plan.counts[numbers])
+            counts = self.plan.counts[numbers].sum(axis=1)
+            lower, upper = np.empty((counts.sum(), 3), np.float32), np.empty((counts.sum(), 3), np.float32)
+            labels = np.empty(len(lower), np.int32)
+            for label, part in parts.items():
+                lower[rows[label]], upper[rows[label]] = _bounds([part], move)
+                labels[rows[label]] = label
+        with timed(self.seconds, "tree"):
+            forest = self._forest(numbers, lower, upper, labels, counts)
+            costs = bvh.sah_costs(forest, intersection_cost=_INTERSECTION_COST).tolist()
+        with timed(self.seconds, "records"):
+            place = np.empty(len(lower), np.int64)
+            for label, part in parts.items():
+                place[rows[label]] = np.arange(len(part))
+                order = place[forest.bvh.order[forest.bvh.run[label] : forest.bvh.run[label + 1]]]
+                self._write_records(numbers[0], label, part, order, move)
+                self._write_attributes(numbers, label, order, attributes)
+            root = forest.root + self._add_nodes(numbers[0], forest.bvh)
+        bounds, nodes, depth = forest.bounds, np.diff(root).tolist(), forest.depth.tolist()
+        for place, number in enumerate(numbers.tolist()):
+            tree = BuiltTree(bounds[place], int(root[place]), nodes[place], depth[place], costs[place])
+            self._added_one(number, tree, attributes)
+
+    def _forest(self, numbers, lower, upper, labels, counts):
+        options = {"leaf_size": _LEAF_SIZE, "intersection_cost": _INTERSECTION_COST}
+        try:
+            return bvh.build_forest(lower, upper, labels, counts, **options)
+        except ValueError:
+            start = np.cumsum(counts) - counts
+            for number, first, count in zip(numbers.tolist(), start.tolist(), counts.tolist(), strict=True):
+                rows = slice(first, first + count)
+                with _naming(self.plan.geometries[number].name):
+                    bvh.build(lower[rows], upper[rows], labels[rows], **options)
+            raise
+
+    def _write_attributes(self, numbers, label, order, attributes):
+        """Write the attributes of a batch's primitives of one kind; `order`: of all of them, by tree."""
+        counts = self.plan.counts[numbers, label]
+        for number, start, count in zip(
+            numbers.tolist(), (np.cumsum(counts) - counts).tolist(), counts.tolist(), strict=True
+        ):
+            if number in attributes.numbers and count:
+                part = dict(self.plan.geometries[number].kinds())[label]
+                attributes.write((number, label), part, order[start : start + count] - start)
 
     def _built(self, number, name, parts, move, quick):
         """Build a tree and write the records of its primitives; (tree, what is kept of it, its cost or 0)."""
@@ -105,24 +167,41 @@ class TreePacker:
             lower, upper = _bounds(parts.values(), move)
             labels = np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])
         with timed(self.seconds, "tree"):
-            try:
+            with _naming(name):
                 if quick:
                     tree = bvh.quick_build(lower, upper, labels, leaf_size=_LEAF_SIZE)
                 else:
                     tree = bvh.build(lower, upper, labels, leaf_size=_LEAF_SIZE, intersection_cost=_INTERSECTION_COST)
-            except ValueError as error:
-                raise SceneError(f"geometry {name!r}: {error}") from error
             del lower, upper, labels
-            keep = self.keep and len(tree.order) >= _WORTH_KEEPING
-            # The cost of all trees would take its time where geometries are many; that of the largest says most.
-            cost = _cost(tree) if keep or number == self.plan.largest or (self.keep and self._are_few) else 0.0
+            cost = _cost(tree)
         with timed(self.seconds, "records"):
             for label, part, order in rows_by_kind(tree, parts):
-                hits, surfaces = self._records(number, label, part)
-                for rows in pieces(len(order)):
-                    piece = part.take(order[rows])
-                    hits[rows], surfaces[rows] = (piece.transformed(move) if move else piece).records()
-        return tree, KeptTree(bvh.Form(tree), cost) if keep else None, cost
+                self._write_records(number, label, part, order, move)
+        return tree, KeptTree(bvh.Form(tree), cost) if self.keep else None, cost
+
+    def _write_records(self, number, label, part, order, move):
+        """Write the records of the rows `order` of a part of a geometry, or of what is joined to it."""
+        hits, surfaces = self._records(number, label, part)
+
+        def write(rows):
+            piece = part.take(order[rows])
+            _copy_records((piece.transformed(move) if move else piece).records(), hits[rows], surfaces[rows])
+
+        _each_piece(write, len(order))
+
+    def _write_moved(self, number, label, part, order, move, spans):
+        """As `_write_records`; also the `spans` (6, n) of the primitives' boxes, as `bvh.Form` takes them."""
+        hits, surfaces = self._records(number, label, part)
+
+        def write(rows):
+            piece = part.take(order[rows])
+            piece = piece.transformed(move) if move else piece
+            lower, upper = bvh.rounded_outward(*piece.bounds())
+            np.negative(lower.T, out=spans[:3, rows])
+            spans[3:, rows] = upper.T
+            _copy_records(piece.records(), hits[rows], surfaces[rows])
+
+        _each_piece(write, len(order))
 
     def _refitted(self, number, parts, move, kept):
         """Put a tree that is kept around other primitives and write their records, both in one go: most of the time
@@ -130,15 +209,8 @@ class TreePacker:
         with timed(self.seconds, "refit"):
             spans, end = np.empty((6, len(kept.form.bvh.order)), np.float32), 0
             for label, part, order in rows_by_kind(kept.form.bvh, parts):
-                hits, surfaces = self._records(number, label, part)
-                for rows in pieces(len(order)):
-                    piece = part.take(order[rows])
-                    piece = piece.transformed(move) if move else piece
-                    lower, upper = bvh.rounded_outward(*piece.bounds())
-                    start, end = end, end + len(lower)
-                    np.negative(lower.T, out=spans[:3, start:end])
-                    spans[3:, start:end] = upper.T
-                    hits[rows], surfaces[rows] = piece.records()
+                start, end = end, end + len(order)
+                self._write_moved(number, label, part, order, move, spans[:, start:end])
             if not np.isfinite(spans).all():
                 return None, None, 0.0  # building says what is wrong
             tree = kept.form.around(spans)
@@ -157,12 +229,13 @@ class TreePacker:
             found.append(layout.records_of(upload.texels, record)[base - upload.first // record.texels :])
         return found
 
-    def _add_nodes(self, number, tree, cost):
+    def _add_nodes(self, number, tree):
+        """Write the nodes of a geometry's tree, or of those of all in a batch; the index of the first."""
         root = self._node_count
         nodes = self._new_nodes(len(tree))
         write_nodes(nodes, tree, root, self.bases[number], np.arange(len(BY_KIND)))
         self._node_count += len(tree)
-        return BuiltTree(tree.bounds, root, len(tree), tree.depth, cost)
+        return root
 
     def _new_nodes(self, count):
         """Records of further nodes that are to be uploaded."""
@@ -204,6 +277,15 @@ class TreePacker:
         self.uploads["nodes"] = Upload(self.node_first * texels, texture, self._node_count * texels)
 
 
+@contextmanager
+def _naming(geometry):
+    """Say of which geometry a box is that no tree can hold."""
+    try:
+        yield
+    except ValueError as error:
+        raise SceneError(f"geometry {geometry!r}: {error}") from error
+
+
 def _cost(tree):
     return bvh.sah_cost(tree, intersection_cost=_INTERSECTION_COST)
 
@@ -220,7 +302,7 @@ def rows_by_kind(tree, parts):
 class AttributeWriter:
     """Attributes that are to be uploaded: the values of the `keys` of an `AttributePlan`, in a range of an `Arena`.
 
-    `first`: texel by key.
+    `first`: texel by key. `numbers`: of the geometries.
     """
 
     def __init__(self, plan, keys, arena):
@@ -231,6 +313,7 @@ class AttributeWriter:
             self.first[name, geometry, kind] = end
             self._ranges.setdefault(geometry, {})[name, kind] = (end, count)
             end += count
+        self.numbers = frozenset(self._ranges)
         self._texture = layout.data_texture(end - self._start)
         self.upload = Upload(self._start, self._texture, end - self._start)
 
@@ -258,17 +341,30 @@ def pieces(count):
     return (slice(start, min(start + _PIECE, count)) for start in range(0, count, _PIECE))
 
 
+def _copy_records(records, *targets):
+    """Copy arrays of records to others (n,) as floats, which is faster than field by field."""
+    for record, target in zip(records, targets, strict=True):
+        target.view(np.float32)[:] = record.view(np.float32)
+
+
+def _each_piece(function, count):
+    """Call a function with slices that cover `count` rows, in threads where they are many."""
+    each(function, pieces(count), worth_it=count >= LARGE)
+
+
 def _bounds(parts, move):
     """Boxes of all rows of several kinds: lower and upper (n, 3) float32, rounded outwards."""
     count = sum(map(len, parts))
     lower, upper = np.empty((count, 3), np.float32), np.empty((count, 3), np.float32)
     start = 0
     for part in parts:
-        for rows in pieces(len(part)):
+        low, high = lower[start : start + len(part)], upper[start : start + len(part)]
+
+        def write(rows, part=part, low=low, high=high):
             piece = part.take(rows)
-            low, high = (piece.transformed(move) if move else piece).bounds()
-            into = slice(start + rows.start, start + rows.stop)
-            lower[into], upper[into] = bvh.rounded_outward(low, high)
+            low[rows], high[rows] = bvh.rounded_outward(*(piece.transformed(move) if move else piece).bounds())
+
+        _each_piece(write, len(part))
         start += len(part)
     return lower, upper
 

@@ -411,12 +411,13 @@ def test_of_another_number_nothing_is_refitted(loaded):
 
 
 def test_what_was_given_back_is_used_again(loaded):
-    """Playing an animation takes twice the memory of a frame, and some to spare, however long it is."""
+    """Playing an animation takes twice the memory of a frame, and some to spare as trees differ in their nodes, however
+    long it is."""
     rooms = []
-    for seed in range(8):
+    for seed in range(12):
         update(loaded, simple_scene(shapes=large(seed=seed)), Settings())
         rooms.append(sum(loaded.texture_bytes.values()))
-    assert max(rooms[2:]) == rooms[2] and rooms[2] < 3.0 * rooms[0]
+    assert max(rooms) < 3.0 * rooms[0] and len(set(rooms[2:])) <= 2
 
 
 def test_a_setting_or_scene_that_is_refused_leaves_what_is_there(loaded, before):

@@ -53,6 +53,22 @@ def test_each_primitive_finds_its_value():
     assert "HAS_ATTRIBUTES" in packed.features and packed.frame["geometry_count"] == 3
 
 
+def test_attributes_of_many_small_geometries():
+    """Trees that are built together, every third geometry without the attribute."""
+    scene = scene_of(Material(diffuse=surface_attribute("size")))
+    counts = np.random.default_rng(0).integers(1, 60, 150)
+    geometries = [Geometry(spheres(n, "size" if i % 3 else None, i)) for i, n in enumerate(counts.tolist())]
+    scene.instances = [Instances(geometry, np.eye(4)) for geometry in geometries]
+    packed = pack(scene, LIMIT)
+    radius = layout.records_of(packed.textures["spheres"], layout.SPHERE)["radius"]
+    index = 0
+    for number, count in enumerate(counts.tolist()):
+        for _ in range(count):
+            found = looked_up(packed, 0, number + 1, "sphere", index)
+            assert found.tolist() == [[radius[index]] * 4] if number % 3 else found is None
+            index += 1
+
+
 def test_values_at_corners_and_ends():
     """Triangles have three texels, cylinders two, in the order of their corners and ends."""
     rng = np.random.default_rng(3)

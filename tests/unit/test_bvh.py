@@ -8,7 +8,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from addon.engine.bvh import MAX_DEPTH, Form, build, quick_build, refit, sah_cost, statistics, sweep_build
+from addon.engine.bvh import (
+    MAX_DEPTH,
+    Form,
+    build,
+    build_forest,
+    quick_build,
+    refit,
+    sah_cost,
+    sah_costs,
+    statistics,
+    sweep_build,
+)
 from addon.engine.bvh.agglomerate import agglomerate
 from addon.engine.bvh.boxes import half_areas, morton_codes, morton_order, spans, take_spans
 from addon.engine.bvh.build import TOP
@@ -385,6 +396,30 @@ def test_a_form_around_spans_is_a_refit(count):
     found = Form(bvh).around(np.concatenate([-(lo + step)[order].T, (hi + step)[order].T]))
     assert np.array_equal(found.boxes, expected.boxes) and np.array_equal(found.bounds, expected.bounds)
     assert np.array_equal(found.child, bvh.child) and np.array_equal(found.order, bvh.order)
+
+
+@pytest.mark.parametrize("cost", [0.3, np.array([0.1, 0.5, 2.0])])
+def test_a_forest_is_of_the_trees_that_are_built_one_by_one(cost):
+    """Whatever the sizes and scales of what is beside them, single primitives and single leaves included."""
+    rng = np.random.default_rng(0)
+    scenes = [uniform, clustered, sphereflake, slivers, grid_mesh]
+    counts = np.array([1, 1, 300, 2, 5, *rng.integers(1, 200, 60), 1])
+    lots = []
+    for number, n in enumerate(counts.tolist()):
+        scale = 10 ** rng.uniform(-20, 20)
+        lo, hi = (corner[:n] * scale for corner in scenes[number % len(scenes)](n, rng))
+        lots.append((lo, hi, rng.integers(0, rng.integers(1, 4), n)))
+    forest = build_forest(*map(np.concatenate, zip(*lots, strict=True)), counts, leaf_size=8, intersection_cost=cost)
+    bounds, costs = forest.bounds, sah_costs(forest, intersection_cost=cost)
+    assert len(forest) == len(counts)
+    for number, (lo, hi, label) in enumerate(lots):
+        expected = build(lo, hi, label, leaf_size=8, intersection_cost=cost)
+        found = forest.tree(number)
+        check(found, lo, hi, label, leaf_size=8)
+        for name in ("boxes", "child", "count", "label", "order", "run", "depth"):
+            assert np.array_equal(getattr(found, name), getattr(expected, name)), (number, name)
+        assert np.array_equal(bounds[number], expected.bounds)
+        assert costs[number] == pytest.approx(sah_cost(expected, intersection_cost=cost), rel=1e-6)
 
 
 def bvh_labels(bvh):

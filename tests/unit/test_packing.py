@@ -38,10 +38,22 @@ def records(packed, record, count):
 
 def leaves(packed):
     """(kind, first, count) of every leaf that is reached from node 0, and through instances from there."""
-    nodes = packed.textures["nodes"].reshape(-1)
-    nodes = nodes[: len(nodes) // 16 * 16].view(layout.NODE.dtype)
     instances = packed.textures.get("instances")
-    todo, found, seen = [0], [], set()
+    todo, found = [0], []
+    for root in todo:
+        for kind, first, count in leaves_below(packed, root):
+            if kind == "instance":
+                roots = layout.records_of(instances, layout.INSTANCE)["root"][first : first + count].astype(int)
+                todo += [root for root in roots.tolist() if root not in todo]
+            else:
+                found.append((kind, first, count))
+    return found
+
+
+def leaves_below(packed, root):
+    """(kind, first, count) of every leaf of the tree that begins at a node."""
+    nodes = layout.records_of(packed.textures["nodes"], layout.NODE)
+    todo, seen = [root], set()
     while todo:
         index = todo.pop()
         assert index not in seen, "a node is reached twice"
@@ -50,18 +62,59 @@ def leaves(packed):
             leaf = int(nodes[f"leaf_{child}"][index])
             first = int(nodes[f"first_{child}"][index]) + ((leaf >> 8) << 24)
             kind, count = layout.KINDS[leaf & 7], (leaf >> 3) & 31
-            if count == 0:
-                if nodes[f"lower_{child}"][index][0] < 1e38:
-                    todo.append(first)
-            elif kind == "instance":
-                floats = 4 * layout.INSTANCE.texels
-                hit = instances.reshape(-1)[floats * first : floats * (first + 1)]
-                root = int(hit.view(layout.INSTANCE.dtype)["root"][0])
-                if root not in seen and root not in todo:
-                    todo.append(root)
-            else:
-                found.append((kind, first, count))
-    return found
+            if count:
+                yield kind, first, count
+            elif nodes[f"lower_{child}"][index][0] < 1e38:
+                todo.append(first)
+
+
+def mixed(number, rng):
+    """A geometry of a few spheres, cylinders and triangles, not of all kinds, around (4 number, 0, 0)."""
+    count = int(rng.integers(1, 120))
+    point = np.add(rng.uniform(-0.3, 0.3, (3, count, 3)), [4.0 * number, 0, 0])
+    parts = [
+        Spheres(center=point[0], radius=0.01),
+        Triangles(p0=point[0], p1=point[1], p2=point[2]),
+        Cylinders(base=point[0], apex=point[1], radius=0.01),
+    ]
+    return Geometry(*(part for kind, part in enumerate(parts) if kind == number % 3 or rng.random() < 0.5))
+
+
+@pytest.mark.parametrize("eye", [(0.0, -5.0, 0.0), (5e4, 0.0, 0.0)])
+def test_trees_that_are_built_together_lead_to_their_own_primitives(eye):
+    """Geometries of a few primitives of several kinds, some moved with the origin, beside a large one."""
+    rng = np.random.default_rng(0)
+    geometries = [mixed(number, rng) for number in range(400)]
+    geometries[7] = Geometry(Spheres(center=np.add(rng.uniform(-0.3, 0.3, (5000, 3)), [28, 0, 0]), radius=0.01))
+    scene = scene_of(eye=eye)
+    twice = np.stack([np.eye(4)] * 2)
+    scene.instances = [Instances(geometry, np.eye(4) if i % 2 else twice) for i, geometry in enumerate(geometries)]
+    packed = pack(scene, LIMIT)
+    hits = layout.records_of(packed.textures["instances"], layout.INSTANCE)[:600]
+    point = {
+        "sphere": (layout.SPHERE, "center"),
+        "triangle": (layout.TRIANGLE, "p0"),
+        "cylinder": (layout.CYLINDER, "base"),
+    }
+    point = {kind: layout.records_of(packed.textures[r.texture], r)[name] for kind, (r, name) in point.items()}
+    for number, geometry in enumerate(geometries):
+        (root,) = set(hits["root"][hits["geometry"] == number + 1].astype(int).tolist())
+        seen = dict.fromkeys(geometry.counts(), 0)
+        for kind, first, count in leaves_below(packed, root):
+            seen[kind] += count
+            moved = packed.origin if number % 2 else np.zeros(3)
+            assert (np.abs(point[kind][first : first + count] + moved - [4.0 * number, 0, 0]) < 0.5).all()
+        assert seen == geometry.counts()
+
+
+def test_of_trees_that_are_built_together_the_one_with_a_bad_box_is_named():
+    geometries = [Geometry(spheres(10), name=f"number {i}") for i in range(20)]
+    huge = Spheres(center=[[0, 0, 0], [1e30, 0, 0]], radius=1e39)
+    geometries[13] = Geometry(huge, name="the bad one")
+    scene = scene_of()
+    scene.instances = [Instances(geometry, np.eye(4)) for geometry in geometries]
+    with pytest.raises(SceneError, match="geometry 'the bad one': boxes: 2 of 2 are"):
+        pack(scene, LIMIT)
 
 
 def test_quick_trees_stand_until_better_ones_are_asked_for():

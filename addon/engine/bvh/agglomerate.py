@@ -18,10 +18,10 @@ import numpy as np
 from .boxes import half_areas, take_spans
 from .topology import Topology
 
-RADIUS = 16
-CODE_BITS = 5  # d - 1 < 16, and the parity
+RADIUS = 8
+CODE_BITS = 4  # d - 1 < 8, and the parity
 CODE_MASK = (1 << CODE_BITS) - 1
-CHUNK = 8192  # edges worked on at a time: the scratch arrays stay in the cache
+CHUNK = 1 << 15  # clusters worked on at a time: the scratch arrays stay in the cache
 
 
 def agglomerate(span: np.ndarray, ids: np.ndarray, topology: Topology, stop: int) -> tuple[np.ndarray, np.ndarray]:
@@ -34,9 +34,9 @@ def agglomerate(span: np.ndarray, ids: np.ndarray, topology: Topology, stop: int
     Returns:
         The spans (6, k) and the nodes (k,) of what remains, still along the curve.
     """
-    coarse = CODE_BITS
+    coarse, codes = CODE_BITS, [_edge_codes(distance) for distance in range(1, RADIUS + 1)]
     while len(ids) > stop:
-        left, right = _mutual_pairs(_cheapest_edges(span, coarse))
+        left, right = _mutual_pairs(_cheapest_edges(span, codes, coarse))
         # Sizes that grow steadily along the curve make chains in which only the last two choose each other.
         # Compare fewer bits of the areas then, in the end none: neighbours pair off.
         coarse = CODE_BITS if len(left) * 16 > len(ids) else min(coarse + 8, 31)
@@ -51,13 +51,12 @@ def agglomerate(span: np.ndarray, ids: np.ndarray, topology: Topology, stop: int
     return span, ids
 
 
-def _cheapest_edges(span: np.ndarray, coarse: int) -> np.ndarray:
+def _cheapest_edges(span: np.ndarray, codes: list[np.ndarray], coarse: int) -> np.ndarray:
     """(n,) int32: the cheapest edge of each cluster, its `coarse` low bits of area ignored."""
     n = span.shape[1]
     best = np.full(n, np.iinfo(np.int32).max, np.int32)
     union = np.empty((6, CHUNK), np.float32)
     size = np.empty((3, CHUNK), np.float32)
-    codes = [_edge_codes(distance) for distance in range(1, RADIUS + 1)]
     mask = np.int32(-1 << coarse) if coarse < 31 else np.int32(0)
     for start in range(0, n - 1, CHUNK):
         for distance, code in enumerate(codes, start=1):
@@ -90,12 +89,16 @@ def _edge_codes(distance: int) -> np.ndarray:
 
 def _mutual_pairs(best: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The places (left < right) of the clusters that chose each other."""
-    place = np.arange(len(best), dtype=np.int32)
-    code = best & CODE_MASK
-    distance = (code >> 1) + 1
-    forward = ((place // distance) & 1) == (code & 1)
-    left = np.flatnonzero(forward)
-    right = left + distance[left]
-    # Seen from the far end the same distance and parity mean backward, so equal numbers are one edge.
-    mutual = best[right] == best[left]
-    return left[mutual], right[mutual]
+    pairs = []
+    for start in range(0, len(best), CHUNK):
+        code = best[start : start + CHUNK] & CODE_MASK
+        distance = (code >> 1) + 1
+        left = np.arange(start, start + len(code), dtype=np.int64)
+        right = left + distance
+        mutual = np.flatnonzero(np.take(best, right, mode="clip") == best[start : start + CHUNK])
+        left, right, code, distance = left[mutual], right[mutual], code[mutual], distance[mutual]
+        # Seen from the far end the same distance and parity mean backward, so equal numbers are one edge.
+        forward = ((left // distance) & 1) == (code & 1)
+        pairs.append((left[forward], right[forward]))
+    left, right = zip(*pairs, strict=True)
+    return np.concatenate(left), np.concatenate(right)

@@ -7,10 +7,15 @@ one sum.
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
+
+from ..threads import LARGE, each
 
 MAX_LABELS = 1 << 16
 MORTON_BITS = 21  # per axis: three of them fit in 64 bits
+SORTED_PIECE = 1 << 13
 OUTLIER_REACH = 512  # leaves 11 bits an axis to the middle of the scene
 
 
@@ -75,19 +80,30 @@ def checked_labels(label: np.ndarray | None, n: int) -> np.ndarray:
     return label.astype(np.int32, copy=False)
 
 
-def spans(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
-    """(6, n) float32 scaled spans of the (n, 3) float32 boxes (n > 0)."""
-    reach = max(-float(lo.min()), float(hi.max()))
-    exponent = -int(np.frexp(reach)[1]) if reach > 0 else 0
-    # 2^exponent itself may lie beyond float32, its two factors never do.
-    first = np.float32(2.0 ** (exponent // 2))
-    second = np.float32(2.0 ** (exponent - exponent // 2))
+def spans(lo: np.ndarray, hi: np.ndarray, counts: np.ndarray | None = None) -> np.ndarray:
+    """(6, n) float32 scaled spans of the (n, 3) float32 boxes (n > 0).
+
+    `counts`: (t,) how many belong together, each lot scaled for itself; by default all.
+    """
+    if counts is None:
+        first, second = _scale(max(-lo.min(), hi.max()))
+    else:
+        start = np.cumsum(counts) - counts
+        reach = np.maximum(-np.minimum.reduceat(lo, start).min(axis=1), np.maximum.reduceat(hi, start).max(axis=1))
+        first, second = (np.repeat(factor, counts) for factor in _scale(reach))
     span = np.empty((6, len(lo)), np.float32)
     for axis in range(3):
         np.multiply(lo[:, axis], -first, out=span[axis])
         np.multiply(hi[:, axis], first, out=span[3 + axis])
     span *= second
     return span
+
+
+def _scale(reach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Two float32 powers of two that bring coordinates up to `reach` down to 1; their product may be beyond float32."""
+    exponent = np.where(reach > 0, -np.frexp(reach)[1], 0)
+    half = exponent // 2
+    return np.ldexp(np.float32(1), half), np.ldexp(np.float32(1), exponent - half)
 
 
 def take_spans(span: np.ndarray, index: np.ndarray) -> np.ndarray:
@@ -106,7 +122,7 @@ def half_areas(span: np.ndarray) -> np.ndarray:
 
 def morton_order(span: np.ndarray) -> np.ndarray:
     """(n,) int64: the boxes along a Z-curve through their centres."""
-    return np.argsort(morton_codes(span), kind="stable")
+    return sorting_order(morton_codes(span))
 
 
 def morton_codes(span: np.ndarray) -> np.ndarray:
@@ -119,6 +135,30 @@ def morton_codes(span: np.ndarray) -> np.ndarray:
         cell = np.clip(cell, 0, 2**MORTON_BITS - 1).astype(np.uint64)
         code |= _spread_bits(cell) << np.uint64(axis)
     return code
+
+
+def sorting_order(code: np.ndarray) -> np.ndarray:
+    """(n,) int64: np.argsort of (n,) uint64 codes of 63 bits, stable.
+
+    Faster where they are many: first by 16 bits, which numpy does in linear time, then what has these in common,
+    pieces of some thousands at a time.
+    """
+    if len(code) < LARGE:
+        return np.argsort(code, kind="stable")
+    upper = (code >> np.uint64(3 * MORTON_BITS - 16)).astype(np.uint16)
+    order = np.argsort(upper, kind="stable")
+    code, upper = code[order], upper[order]
+    bounds = np.searchsorted(upper, upper[::SORTED_PIECE])
+    bounds = np.append(bounds[np.diff(bounds, prepend=-1) > 0], len(code)).tolist()
+
+    def sort(pieces):
+        for start, stop in pieces:
+            piece = order[start:stop]
+            piece[:] = piece[np.argsort(code[start:stop], kind="stable")]
+
+    pieces = list(itertools.pairwise(bounds))
+    each(sort, (pieces[start : start + 16] for start in range(0, len(pieces), 16)), worth_it=True)
+    return order
 
 
 def _grid_cube(centre: np.ndarray) -> tuple[np.ndarray, float]:

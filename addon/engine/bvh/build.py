@@ -13,10 +13,10 @@ import numpy as np
 from .agglomerate import agglomerate
 from .boxes import checked_boxes, checked_labels, half_areas, morton_order, spans
 from .cost import INTERSECTION_COST, TRAVERSAL_COST
-from .flatten import LEAF_SIZE, flatten
+from .flatten import LEAF_SIZE, flatten, flatten_all
 from .split import split_topdown
 from .topology import Topology
-from .tree import Bvh, empty_bvh
+from .tree import Bvh, Forest, empty_bvh
 
 TOP = 8192  # clusters left to the sweep
 
@@ -47,6 +47,29 @@ def build(
     return assemble(_join, lo, hi, label, leaf_size, traversal_cost, intersection_cost)
 
 
+def build_forest(
+    lo: np.ndarray,
+    hi: np.ndarray,
+    label: np.ndarray | None,
+    counts: np.ndarray,
+    *,
+    leaf_size: int = LEAF_SIZE,
+    traversal_cost: float = TRAVERSAL_COST,
+    intersection_cost: float | np.ndarray = INTERSECTION_COST,
+) -> Forest:
+    """The hierarchies over lots of boxes, one after the other: the same trees as `build` makes of each, in one go.
+
+    `counts`: (t,) how many are in each lot, 1 to `TOP`.
+    """
+    lo, hi, label = checked(lo, hi, label, leaf_size)
+    span = spans(lo, hi, counts)
+    topology = Topology(half_areas(span), len(counts))
+    split_topdown(span, np.arange(topology.n, dtype=np.int32), np.ones(topology.n), topology, counts)
+    del span
+    curve = np.arange(len(lo))
+    return flatten_all(topology, counts, curve, lo, hi, label, leaf_size, traversal_cost, intersection_cost)
+
+
 def assemble(
     join: Callable[[np.ndarray], Topology],
     lo: np.ndarray,
@@ -60,10 +83,7 @@ def assemble(
 
     Where they are many they lie along the curve, so that what belongs together lies together in memory.
     """
-    if leaf_size < 1:
-        raise ValueError(f"leaf_size must be at least 1, not {leaf_size}")
-    lo, hi = checked_boxes(lo, hi)
-    label = checked_labels(label, len(lo))
+    lo, hi, label = checked(lo, hi, label, leaf_size)
     if len(lo) == 0:
         return empty_bvh()
     span = spans(lo, hi)
@@ -75,6 +95,16 @@ def assemble(
     topology = join(span)
     del span
     return flatten(topology, curve, lo, hi, label, leaf_size, traversal_cost, intersection_cost)
+
+
+def checked(
+    lo: np.ndarray, hi: np.ndarray, label: np.ndarray | None, leaf_size: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Boxes and labels as the builders use them; raises ValueError as `build`."""
+    if leaf_size < 1:
+        raise ValueError(f"leaf_size must be at least 1, not {leaf_size}")
+    lo, hi = checked_boxes(lo, hi)
+    return lo, hi, checked_labels(label, len(lo))
 
 
 def _join(span: np.ndarray) -> Topology:

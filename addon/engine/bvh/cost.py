@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .tree import Bvh
+from .tree import Bvh, Forest
 
 TRAVERSAL_COST = 1.0  # of visiting a node, which tests the boxes of both its children
 PIECE = 1 << 15  # nodes worked on at a time
@@ -31,15 +31,28 @@ def sah_cost(
     lo, hi = bvh.bounds.astype(np.float64)
     root = _half_area(hi - lo)
     test = cost_by_label(intersection_cost, np.maximum(bvh.label, 0))
-    total = traversal_cost
-    for start in range(0, len(bvh), PIECE):
-        piece = slice(start, start + PIECE)
-        used = (bvh.count[piece] > 0) | (bvh.child[piece] >= 0)
-        boxes, count = bvh.boxes[piece][used].astype(np.float64), bvh.count[piece][used]
-        share = _half_area(boxes[:, 1] - boxes[:, 0]) / root if root > 0 else np.ones(len(boxes))
-        cost = np.where(count > 0, count * test[bvh.label[piece][used]], traversal_cost)
-        total += float(np.sum(share * cost))
-    return total
+    pieces = (slice(start, start + PIECE) for start in range(0, len(bvh), PIECE))
+    return traversal_cost + sum(float(_costs(bvh, piece, root, traversal_cost, test).sum()) for piece in pieces)
+
+
+def sah_costs(
+    forest: Forest, traversal_cost: float = TRAVERSAL_COST, intersection_cost: float | np.ndarray = INTERSECTION_COST
+) -> np.ndarray:
+    """(t,) float64: `sah_cost` of each tree."""
+    bvh, (lo, hi) = forest.bvh, np.moveaxis(forest.bounds.astype(np.float64), 1, 0)
+    root = np.repeat(_half_area(hi - lo), np.diff(forest.root))
+    test = cost_by_label(intersection_cost, np.maximum(bvh.label, 0))
+    costs = _costs(bvh, slice(None), root[:, None], traversal_cost, test)
+    return traversal_cost + np.add.reduceat(costs.sum(axis=1), forest.root[:-1])
+
+
+def _costs(bvh: Bvh, nodes: slice, root: np.ndarray, traversal_cost: float, test: np.ndarray) -> np.ndarray:
+    """(m, 2) float64: what children of nodes cost. `root`: half the surface; `test`: by label."""
+    boxes, count, child = bvh.boxes[nodes].astype(np.float64), bvh.count[nodes], bvh.child[nodes]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(np.asarray(root) > 0, _half_area(boxes[:, :, 1] - boxes[:, :, 0]) / root, 1.0)
+    cost = np.where(count > 0, count * test[bvh.label[nodes]], traversal_cost)
+    return np.where((count > 0) | (child >= 0), share * cost, 0.0)
 
 
 def statistics(bvh: Bvh) -> dict[str, int | float]:

@@ -1,4 +1,4 @@
-"""From a binary tree to a `Bvh`: which subtrees become leaves, where nodes and primitives lie."""
+"""From binary trees to a `Bvh`: which subtrees become leaves, where nodes and primitives lie."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from .cost import cost_by_label
 from .refit import put_around
 from .topology import Topology
-from .tree import MAX_DEPTH, MIXED, Bvh
+from .tree import MAX_DEPTH, MIXED, Bvh, Forest
 
 LEAF_SIZE = 4
 
@@ -27,22 +27,38 @@ def flatten(
     traversal_cost: float,
     intersection_cost: float | np.ndarray,
 ) -> Bvh:
-    """The `Bvh` of a complete `topology` over the (n, 3) float32 boxes with (n,) int32 labels, n > 0.
+    """The `Bvh` of a complete `topology` of one tree over the (n, 3) float32 boxes with (n,) int32 labels, n > 0.
 
     `curve` (n,) int64: which box primitive i of the topology is.
     """
+    counts = np.array([len(curve)])
+    return flatten_all(topology, counts, curve, lo, hi, label, leaf_size, traversal_cost, intersection_cost).bvh
+
+
+def flatten_all(
+    topology: Topology,
+    counts: np.ndarray,
+    curve: np.ndarray,
+    lo: np.ndarray,
+    hi: np.ndarray,
+    label: np.ndarray,
+    leaf_size: int,
+    traversal_cost: float,
+    intersection_cost: float | np.ndarray,
+) -> Forest:
+    """As `flatten`, of trees over (t,) `counts` of primitives one after the other."""
     topology.larger_first()
     count, leaves, kind = _choose_leaves(topology, label[curve], leaf_size, traversal_cost, intersection_cost)
-    start, primitives = _depth_first(topology, count)
+    start, primitives = _depth_first(topology, counts, count)
     order, run, rank = runs(curve[primitives], label)
     del primitives
     leaf = _leaf_nodes(topology, leaves, start)
-    root = len(leaves) - 1
-    child, size, kinds, depth = lay_out(rank[start[leaf]], count[leaf], kind[leaf], root, _follow(topology, leaves))
-    del count, leaves, kind, start, rank, leaf  # the boxes need room of their own
+    form = rank[start[leaf]], count[leaf], kind[leaf]
+    child, size, kinds, root, depth = lay_out(*form, topology.roots, leaves[topology.roots], _follow(topology, leaves))
+    del count, leaves, kind, start, rank, leaf, form  # the boxes need room of their own
     no_boxes = np.empty((0, 2, 2, 3), np.float32)
-    bvh = Bvh(no_boxes, child, size, kinds, order, run, depth)
-    return put_around(bvh, lo, hi)
+    bvh = Bvh(no_boxes, child, size, kinds, order, run, int(depth.max()))
+    return Forest(put_around(bvh, lo, hi, root[:-1]), root, depth, counts)
 
 
 def _choose_leaves(
@@ -56,13 +72,13 @@ def _choose_leaves(
     children are leaves and one is no dearer.
 
     Returns, for every node of the topology, the numbers of primitives and of leaves below it (1 within a leaf
-    too), and its label or MIXED; (2n - 1,) int32 each.
+    too), and its label or MIXED; (2n - t,) int32 each.
     """
-    n = topology.n
-    count, leaves = np.ones(2 * n - 1, np.int32), np.ones(2 * n - 1, np.int32)
-    kind = np.empty(2 * n - 1, np.int32)
+    n, nodes = topology.n, len(topology.area)
+    count, leaves = np.ones(nodes, np.int32), np.ones(nodes, np.int32)
+    kind = np.empty(nodes, np.int32)
     kind[:n] = label
-    cost = np.empty(2 * n - 1, np.float32)
+    cost = np.empty(nodes, np.float32)
     single = cost_by_label(intersection_cost, label)
     cost[:n] = topology.area[:n] * single[label]
     for batch in topology.batches:
@@ -80,10 +96,11 @@ def _choose_leaves(
     return count, leaves, kind
 
 
-def _depth_first(topology: Topology, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Depth-first order: each node's first primitive, (2n - 1,) int32; the primitives, (n,) int64."""
+def _depth_first(topology: Topology, counts: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Depth-first order: each node's first primitive, (2n - t,) int32; the primitives, (n,) int64."""
     n = topology.n
-    start = np.zeros(2 * n - 1, np.int32)
+    start = np.empty(len(count), np.int32)
+    start[topology.roots] = np.cumsum(counts) - counts
     for batch in reversed(topology.batches):
         left, right = topology.left[batch], topology.right[batch]
         first = start[n + batch.start : n + batch.stop]
@@ -98,12 +115,12 @@ def runs(primitives: np.ndarray, label: np.ndarray) -> tuple[np.ndarray, np.ndar
     """`order` and `run` of the `Bvh`; and per depth-first place the place in its label's run, (n,)."""
     run = np.concatenate([[0], np.cumsum(np.bincount(label))]).astype(np.int64)
     if len(run) == 2:
-        return primitives, run, np.arange(len(primitives))
+        return primitives, run, np.arange(len(primitives), dtype=np.int32)
     labels = label[primitives]
     places = np.argsort(labels.astype(np.uint16), kind="stable")
-    rank = np.empty(len(places), np.int64)
-    rank[places] = np.arange(len(places))
-    return primitives[places], run, rank - run[labels]
+    rank = np.empty(len(places), np.int32)
+    rank[places] = np.arange(len(places)) - np.repeat(run[:-1], np.diff(run))
+    return primitives[places], run, rank
 
 
 def _leaf_nodes(topology: Topology, leaves: np.ndarray, start: np.ndarray) -> np.ndarray:
@@ -131,9 +148,9 @@ def _follow(topology: Topology, leaves: np.ndarray) -> Cut:
 
 
 def lay_out(
-    begin: np.ndarray, size: np.ndarray, kind: np.ndarray, root: int, cut: Cut
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-    """Top down, a level at a time: `child`, `count` and `label` of the `Bvh` over leaves, and its depth.
+    begin: np.ndarray, size: np.ndarray, kind: np.ndarray, roots: np.ndarray, leaves: np.ndarray, cut: Cut
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Top down, a level at a time: `child`, `count`, `label` of the `Bvh` over leaves; `root`, `depth` of the `Forest`.
 
     A subtree of c leaves has c - 1 nodes, so depth-first places are known at once. A chain that would become
     too deep is replaced by halves: its leaves are a range in depth-first order, and neighbours there are near
@@ -142,23 +159,26 @@ def lay_out(
     Args:
         begin, size, kind: (k,) of the leaves in depth-first order: first primitive as in `Bvh.child`, number of
             primitives, label.
-        root: what `cut` knows the root by.
+        roots: (t,) what `cut` knows the roots of the trees by.
+        leaves: (t,) numbers of leaves of the trees, one after the other.
         cut: (nodes (s,), their first leaf (s,), their numbers of leaves (s,)) to (leaves of child 0 (s,), nodes
             below (s, 2)). Nodes are what it likes, but -1 where it was not followed: it is given them again.
     """
-    m = max(len(begin) - 1, 1)
-    child, count = np.full((m, 2), -1, np.int64), np.zeros((m, 2), np.int32)
-    label = np.full((m, 2), MIXED, np.int32)
-    if len(begin) == 1:
-        child[0, 0], count[0, 0], label[0, 0] = begin[0], size[0], kind[0]
-        return child, count, label, 1
+    root = np.concatenate([[0], np.cumsum(np.maximum(leaves - 1, 1), dtype=np.int64)])
+    child, count = np.full((root[-1], 2), -1, np.int64), np.zeros((root[-1], 2), np.int32)
+    label = np.full((root[-1], 2), MIXED, np.int32)
+    first = np.cumsum(leaves, dtype=np.int64) - leaves
+    alone = leaves == 1
+    only, at = root[:-1][alone], first[alone]
+    child[only, 0], count[only, 0], label[only, 0] = begin[at], size[at], kind[at]
 
-    place, first, number = np.zeros(1, np.int64), np.zeros(1, np.int64), np.array([len(begin)])
-    node, depth = np.array([root]), 0
+    depth, level = np.ones(len(leaves), np.int64), 0
+    tree = np.flatnonzero(~alone)
+    place, first, number, node = root[tree], first[tree], leaves[tree], roots[tree]
     while len(place):
         left, sides = cut(node, first, number)
         # Halving c leaves takes ceil(log2 c) levels: the last chance to begin is when just so many are left.
-        halve = depth + np.ceil(np.log2(number)) >= MAX_DEPTH
+        halve = level + np.ceil(np.log2(number)) >= MAX_DEPTH
         left, sides = np.where(halve, number // 2, left), np.where(halve[:, None], -1, sides)
         numbers = np.stack([left, number - left], axis=1)
         firsts = np.stack([first, first + left], axis=1)
@@ -167,6 +187,9 @@ def lay_out(
         child[place] = np.where(ends, begin[firsts], places)
         count[place] = np.where(ends, size[firsts], 0)
         label[place] = np.where(ends, kind[firsts], MIXED)
-        place, first, number, node = places[~ends], firsts[~ends], numbers[~ends], sides[~ends]
-        depth += 1
-    return child, count, label, depth
+        level += 1
+        depth[tree] = level
+        inner = ~ends
+        place, first, number, node = places[inner], firsts[inner], numbers[inner], sides[inner]
+        tree = np.repeat(tree, np.count_nonzero(inner, axis=1)) if len(leaves) > 1 else tree
+    return child, count, label, root, depth

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .boxes import checked_boxes, checked_labels, morton_codes, spans
+from .boxes import morton_codes, sorting_order, spans
+from .build import checked
 from .flatten import LEAF_SIZE, Cut, lay_out, runs
 from .refit import put_around
 from .tree import Bvh, empty_bvh
@@ -17,20 +18,18 @@ from .tree import Bvh, empty_bvh
 def quick_build(lo: np.ndarray, hi: np.ndarray, label: np.ndarray | None = None, *, leaf_size: int = LEAF_SIZE) -> Bvh:
     """As `build`, several times faster and up to twice as dear. Costs are not looked at: what fits in a leaf is one,
     and child 0 is not the larger one but the first along the curve."""
-    if leaf_size < 1:
-        raise ValueError(f"leaf_size must be at least 1, not {leaf_size}")
-    lo, hi = checked_boxes(lo, hi)
-    label = checked_labels(label, len(lo))
+    lo, hi, label = checked(lo, hi, label, leaf_size)
     if len(lo) == 0:
         return empty_bvh()
     code = morton_codes(spans(lo, hi))
-    curve = np.argsort(code)
+    curve = sorting_order(code)
     code = code[curve]
     start, curve = _leaf_starts(cell_starts(code, leaf_size), curve, label)
     order, run, rank = runs(curve, label)
     size = np.diff(start, append=len(curve))
-    child, count, kind, depth = lay_out(rank[start], size, label[curve[start]], 0, _cut_by_codes(code[start]))
-    bvh = Bvh(np.empty((0, 2, 2, 3), np.float32), child, count, kind, order, run, depth)
+    leaves, cut = np.array([len(start)]), _cut_by_codes(code[start])
+    child, count, kind, _, depth = lay_out(rank[start], size, label[curve[start]], np.zeros(1, np.int64), leaves, cut)
+    bvh = Bvh(np.empty((0, 2, 2, 3), np.float32), child, count, kind, order, run, int(depth[0]))
     return put_around(bvh, lo, hi)
 
 

@@ -32,18 +32,23 @@ class _Level:
         return np.diff(self.start)
 
 
-def split_topdown(span: np.ndarray, ids: np.ndarray, weight: np.ndarray, topology: Topology) -> None:
-    """Join the clusters into one tree in `topology`.
+def split_topdown(
+    span: np.ndarray, ids: np.ndarray, weight: np.ndarray, topology: Topology, counts: np.ndarray | None = None
+) -> None:
+    """Join the clusters into trees in `topology`.
 
     Args:
         span: (6, k) float32 spans of the clusters.
         ids: (k,) their nodes in `topology`.
         weight: (k,) numbers of primitives in them.
+        counts: (t,) numbers of clusters, one after the other, that make a tree each; by default all make one.
     """
-    if len(ids) == 1:
-        return
+    counts = np.array([len(ids)]) if counts is None else counts
+    tree = np.repeat(np.arange(len(counts)), counts)
     centre = span[3:] - span[:3]  # twice the centre, which sorts the same
-    level = _Level(np.argsort(centre, axis=1, kind="stable"), np.array([0, len(ids)]))
+    order = np.stack([np.lexsort((axis, tree)) for axis in centre])
+    several = counts > 1
+    level = _Level(order[:, several[tree]], np.concatenate([[0], np.cumsum(counts[several])]))
     fixed = np.rint(span.astype(np.float64) * 2.0**FIXED_BITS).astype(np.int64)
     areas, parents = [], []
     while len(level.order[0]):
@@ -51,21 +56,36 @@ def split_topdown(span: np.ndarray, ids: np.ndarray, weight: np.ndarray, topolog
         areas.append(half_areas(np.maximum.reduceat(span[:, level.order[0]], level.start[:-1], axis=1)))
         level, children = _partition(level, cut, axis, len(fixed[0]))
         parents.append(children)
-    _emit(areas, parents, ids, topology)
+    topology.roots = ids[np.cumsum(counts) - counts]
+    topology.roots[several] = _emit(areas, parents, ids, topology)
 
 
-def _emit(areas: list, parents: list, ids: np.ndarray, topology: Topology) -> None:
-    """Add the levels, deepest first. A child >= 0 is a segment of the next level, ~child an item."""
+def _emit(areas: list, parents: list, ids: np.ndarray, topology: Topology) -> np.ndarray:
+    """Add the levels, deepest first; the nodes of the first. A child >= 0 is a segment of the next level, ~child an
+    item."""
     below = np.empty(0, np.int32)
     for area, children in zip(reversed(areas), reversed(parents), strict=True):
         nodes = np.where(children < 0, ids[np.where(children < 0, ~children, 0)], 0)
         inner = children >= 0
         nodes[inner] = below[children[inner]]
         below = topology.add(nodes[:, 0], nodes[:, 1], area)
+    return below
 
 
 def _cheapest_cuts(level: _Level, fixed: np.ndarray, weight: np.ndarray, halve: bool) -> tuple[np.ndarray, np.ndarray]:
     """Per segment of two items or more: (s,) items left of the cut and (s,) axis."""
+    size = level.size
+    cut, axis = np.ones(len(size), np.int64), np.zeros(len(size), np.int64)
+    many = size > 2  # there is one way to cut the others
+    if many.any():
+        order = level.order[:, np.repeat(many, size)]
+        part = _Level(order, np.concatenate([[0], np.cumsum(size[many])]))
+        cut[many], axis[many] = _swept_cuts(part, fixed, weight, halve)
+    return cut, axis
+
+
+def _swept_cuts(level: _Level, fixed: np.ndarray, weight: np.ndarray, halve: bool) -> tuple[np.ndarray, np.ndarray]:
+    """As `_cheapest_cuts`."""
     size, start = level.size, level.start[:-1]
     segment = np.repeat(np.arange(len(size)), size)
     rank = np.arange(len(segment)) - start[segment]  # items left of a cut before this one
@@ -100,15 +120,29 @@ def _sweep_areas(fixed: np.ndarray, items: np.ndarray, segment: np.ndarray) -> t
     """(k,) half areas of the unions, within the segment, of the items up to each, and from each on."""
     offset = segment << (FIXED_BITS + 2)
     back = offset[-1] - offset
-    left, right = np.empty((6, len(items))), np.empty((6, len(items)))
-    for row in range(6):
-        values = fixed[row][items]
-        left[row] = np.maximum.accumulate(values + offset) - offset
-        right[row] = (np.maximum.accumulate((values + back)[::-1])[::-1]) - back
+    left, right = np.empty((3, len(items))), np.empty((3, len(items)))
+    for axis in range(3):
+        low, high = fixed[axis][items], fixed[3 + axis][items]
+        size = np.maximum.accumulate(low + offset)
+        size += np.maximum.accumulate(high + offset)
+        size -= 2 * offset
+        left[axis] = size
+        low += back
+        high += back
+        size = np.maximum.accumulate(low[::-1])
+        size += np.maximum.accumulate(high[::-1])
+        right[axis] = size[::-1]
+        right[axis] -= 2 * back
     # Boxes half a unit larger all round: those without area still count by their length, none is free.
-    left += 0.5
-    right += 0.5
-    return half_areas(left), half_areas(right)
+    left += 1.0
+    right += 1.0
+    return _half_areas(left), _half_areas(right)
+
+
+def _half_areas(size: np.ndarray) -> np.ndarray:
+    """(n,) half surface areas of boxes with (3, n) sizes."""
+    x, y, z = size
+    return x * y + z * (x + y)
 
 
 def _partition(level: _Level, cut: np.ndarray, axis: np.ndarray, n: int) -> tuple[_Level, np.ndarray]:

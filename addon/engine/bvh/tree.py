@@ -77,6 +77,62 @@ class Bvh:
         return np.stack([root[:, 0].min(axis=0), root[:, 1].max(axis=0)])
 
 
+@dataclass(frozen=True, eq=False)
+class Forest:
+    """The hierarchies of t lots of primitives in one.
+
+    Attributes:
+        bvh: its nodes are those of all trees, one tree after the other; its primitives those of all lots, and in a
+            label's run likewise those of one tree after the other. Children are counted accordingly. `depth` is that
+            of the deepest tree. `bounds` is of no use.
+        root: (t + 1,) int64: the first node of each tree; the number of nodes.
+        depth: (t,) int64: of each tree, see `Bvh.depth`.
+        counts: (t,) int64: numbers of primitives.
+    """
+
+    bvh: Bvh
+    root: np.ndarray
+    depth: np.ndarray
+    counts: np.ndarray
+
+    def __len__(self) -> int:
+        """The number of trees, t."""
+        return len(self.depth)
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """(t, 2, 3) float32: lo and hi of each tree."""
+        boxes, empty = self.bvh.boxes[self.root[:-1]], self.bvh.child[self.root[:-1], 1] < 0
+        boxes[empty, 1] = boxes[empty, 0]
+        return np.stack([boxes[:, :, 0].min(axis=1), boxes[:, :, 1].max(axis=1)], axis=1)
+
+    def runs(self) -> np.ndarray:
+        """(t + 1, labels) int64: where the primitives of each tree and label begin in `bvh.order`; where they end."""
+        labels = len(self.bvh.run) - 1
+        tree = np.repeat(np.arange(len(self)), self.counts)[self.bvh.order]
+        label = np.repeat(np.arange(labels), np.diff(self.bvh.run))
+        counts = np.bincount(tree * labels + label, minlength=len(self) * labels).reshape(-1, labels)
+        return self.bvh.run[:-1] + np.concatenate([np.zeros((1, labels), np.int64), np.cumsum(counts, axis=0)])
+
+    def tree(self, number: int) -> Bvh:
+        """One of the hierarchies, as if it had been built alone."""
+        bvh, nodes = self.bvh, slice(*self.root[number : number + 2])
+        start, stop = self.runs()[number : number + 2]
+        start, stop = (ends[: 1 + np.flatnonzero(stop > start)[-1]] for ends in (start, stop))
+        first = np.concatenate([start - bvh.run[: len(start)], [self.root[number]]])
+        child, label = bvh.child[nodes], bvh.label[nodes]
+        order = np.concatenate([bvh.order[a:b] for a, b in zip(start, stop, strict=True)])
+        return Bvh(
+            boxes=bvh.boxes[nodes],
+            child=np.where(child >= 0, child - first[label], -1),  # MIXED is the last, the nodes
+            count=bvh.count[nodes],
+            label=label,
+            order=order - self.counts[:number].sum(),
+            run=np.concatenate([[0], np.cumsum(stop - start)]),
+            depth=int(self.depth[number]),
+        )
+
+
 def empty_bvh() -> Bvh:
     """The hierarchy of no primitives."""
     return Bvh(

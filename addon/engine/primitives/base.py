@@ -121,14 +121,15 @@ class Primitives:
         return new
 
     @classmethod
-    def concatenate(cls, parts):
-        """All rows of several objects of this kind, in order. An attribute that some lack is 0 there."""
+    def concatenate(cls, parts, *, attributes=True):
+        """All rows of several objects of this kind, in order. An attribute that some lack is 0 there; none at all
+        without `attributes`."""
         if len(parts) == 1:
             return parts[0]
         new = object.__new__(cls)
         for column in cls.columns:
             setattr(new, column.name, _joined([getattr(part, column.name) for part in parts]))
-        names = dict.fromkeys(name for part in parts for name in part.attributes)
+        names = dict.fromkeys(name for part in parts for name in part.attributes) if attributes else ()
         new.attributes = {name: _joined(_widened(name, parts)) for name in names}
         return new
 
@@ -173,9 +174,10 @@ def _rows(array, order):
 
 def _joined(arrays):
     """Arrays (n, ...) one after the other; one row repeated where they all repeat the same."""
-    first = arrays[0][:1]
-    if all(is_one_value(array) and np.array_equal(array[:1], first, equal_nan=True) for array in arrays):
-        return np.broadcast_to(first, (sum(map(len, arrays)), *first.shape[1:]))
+    if all(map(is_one_value, arrays)):
+        rows = np.stack([array[0] for array in arrays])
+        if np.array_equal(rows, np.broadcast_to(rows[:1], rows.shape), equal_nan=True):
+            return np.broadcast_to(rows[:1], (sum(map(len, arrays)), *rows.shape[1:]))
     return np.concatenate(arrays)
 
 
@@ -185,6 +187,18 @@ def _widened(name, parts):
     values = [part.attributes.get(name, lacking) for part in parts]
     width = max(v.shape[1] for v in values)
     return [np.broadcast_to(v, (len(part), width, 4)) for v, part in zip(values, parts, strict=True)]
+
+
+def fill(records, **values):
+    """Set fields of records (n,) to what broadcasts to them; vectors an axis at a time, faster than row by row."""
+    for name, value in values.items():
+        field = records[name]
+        if field.ndim == 1:
+            field[:] = value
+            continue
+        value = np.broadcast_to(value, field.shape)
+        for axis in range(field.shape[1]):
+            field[:, axis] = value[:, axis]
 
 
 def any_perpendicular(axis):

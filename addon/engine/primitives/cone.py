@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..layout import CONE, CONE_SURFACE
-from .base import Column, Primitives, dot, perpendicular_part
+from .base import Column, Primitives, dot, fill, perpendicular_part
 from .cylinder import axis_and_length, meridian_u, quadric_hit, segment_bounds
 from .disc import IDENTITY_UV
 
@@ -53,13 +53,12 @@ class Cones(Primitives):
 
     def records(self):
         hit = self.record.zeros(len(self))
-        hit["base"], hit["axis"] = self.base, self.apex - self.base
-        hit["base_radius"], hit["apex_radius"] = self.base_radius, self.apex_radius
+        fill(hit, base=self.base, axis=self.apex - self.base)
+        fill(hit, base_radius=self.base_radius, apex_radius=self.apex_radius)
         surface = self.surface_record.zeros(len(self))
         axis, _ = axis_and_length(self.base, self.apex)
-        surface["meridian"] = perpendicular_part(self.meridian, axis)
-        surface["material"], surface["uv_transform"] = self.material, self.uv_transform
-        surface["planar"] = self.planar
+        meridian = perpendicular_part(self.meridian, axis)
+        fill(surface, meridian=meridian, material=self.material, uv_transform=self.uv_transform, planar=self.planar)
         return hit, surface
 
     def reference_hit(self, origin, direction, t_min=0.0):

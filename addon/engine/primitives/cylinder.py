@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..layout import CYLINDER, CYLINDER_SURFACE
-from .base import Column, Primitives, angle_u, dot, nearest_root, perpendicular_part
+from .base import Column, Primitives, angle_u, dot, fill, nearest_root, perpendicular_part
 from .disc import IDENTITY_UV
 
 
@@ -45,11 +45,11 @@ class Cylinders(Primitives):
 
     def records(self):
         hit = self.record.zeros(len(self))
-        hit["base"], hit["radius"], hit["axis"] = self.base, self.radius, self.apex - self.base
+        fill(hit, base=self.base, radius=self.radius, axis=self.apex - self.base)
         surface = self.surface_record.zeros(len(self))
         axis, _ = axis_and_length(self.base, self.apex)
-        surface["meridian"] = perpendicular_part(self.meridian, axis)
-        surface["material"], surface["uv_transform"] = self.material, self.uv_transform
+        meridian = perpendicular_part(self.meridian, axis)
+        fill(surface, meridian=meridian, material=self.material, uv_transform=self.uv_transform)
         return hit, surface
 
     def reference_hit(self, origin, direction, t_min=0.0):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..layout import DISC, DISC_SURFACE
-from .base import Column, Primitives, dot, perpendicular_part
+from .base import Column, Primitives, dot, fill, perpendicular_part
 
 IDENTITY_UV = (1.0, 1.0, 0.0, 0.0)
 
@@ -47,10 +47,10 @@ class Discs(Primitives):
 
     def records(self):
         hit = self.record.zeros(len(self))
-        hit["center"], hit["radius"], hit["normal"] = self.center, self.radius, self.normal
+        fill(hit, center=self.center, radius=self.radius, normal=self.normal)
         surface = self.surface_record.zeros(len(self))
-        surface["meridian"] = perpendicular_part(self.meridian, self.normal)
-        surface["material"], surface["uv_transform"] = self.material, self.uv_transform
+        meridian = perpendicular_part(self.meridian, self.normal)
+        fill(surface, meridian=meridian, material=self.material, uv_transform=self.uv_transform)
         return hit, surface
 
     def reference_hit(self, origin, direction, t_min=0.0):

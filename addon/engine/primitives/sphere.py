@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..layout import FIXED_UV, SPHERE, SPHERE_SURFACE
-from .base import Column, Primitives, angle_u, dot, is_one_value, nearest_root, perpendicular_part
+from .base import Column, Primitives, angle_u, dot, fill, is_one_value, nearest_root, perpendicular_part
 
 
 class Spheres(Primitives):
@@ -30,8 +30,13 @@ class Spheres(Primitives):
         self._refuse(self.radius == 0.0, "the radius is 0, a sphere needs one")
 
     def bounds(self):
-        radius = np.abs(self.radius)[:, None]
-        return self.center - radius, self.center + radius
+        radius = np.abs(self.radius)
+        lower = np.empty((len(self), 3), np.result_type(self.center, radius))
+        upper = np.empty_like(lower)
+        for axis in range(3):  # faster than row by row
+            np.subtract(self.center[:, axis], radius, out=lower[:, axis])
+            np.add(self.center[:, axis], radius, out=upper[:, axis])
+        return lower, upper
 
     def transformed(self, similarity):
         return self._with(
@@ -45,10 +50,9 @@ class Spheres(Primitives):
 
     def records(self):
         hit = self.record.zeros(len(self))
-        hit["center"], hit["radius"] = self.center, self.radius
+        fill(hit, center=self.center, radius=self.radius)
         surface = self.surface_record.zeros(len(self))
-        surface["rotation"] = self._rotation_parameters()
-        surface["material"] = self.material
+        fill(surface, rotation=self._rotation_parameters(), material=self.material)
         return hit, surface
 
     def _frames(self):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..layout import TRIANGLE, TRIANGLE_SURFACE
-from .base import Column, Primitives, dot
+from .base import Column, Primitives, dot, fill
 
 
 class Triangles(Primitives):
@@ -39,13 +39,9 @@ class Triangles(Primitives):
     def records(self):
         hit = self.record.zeros(len(self))
         surface = self.surface_record.zeros(len(self))
-        for name in ("p0", "p1", "p2", "one_sided"):
-            hit[name] = getattr(self, name)
-        for name in ("n0", "n1", "n2"):
-            surface[name] = _unit_or_zero(getattr(self, name))
-        for name in ("uv1", "uv2", "material"):
-            surface[name] = getattr(self, name)
-        surface["u0"], surface["v0"] = self.uv0[:, 0], self.uv0[:, 1]
+        fill(hit, p0=self.p0, p1=self.p1, p2=self.p2, one_sided=self.one_sided)
+        fill(surface, n0=_unit_or_zero(self.n0), n1=_unit_or_zero(self.n1), n2=_unit_or_zero(self.n2))
+        fill(surface, u0=self.uv0[:, 0], v0=self.uv0[:, 1], uv1=self.uv1, uv2=self.uv2, material=self.material)
         return hit, surface
 
     def reference_hit(self, origin, direction, t_min=0.0):
