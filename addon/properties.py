@@ -80,8 +80,9 @@ class ConicSceneSettings(FilmProperties, bpy.types.PropertyGroup):
     )
     preview_frame_seconds: FloatProperty(
         name="Frame",
-        description="How long a redraw of the viewport may take. While the view turns, the picture has as many pixels "
-        "as are drawn in this time. Less is smoother, more is sharper",
+        description="How long a redraw of the viewport may take while something happens. While the view turns, the "
+        "picture has as many pixels as are drawn in this time. Less is smoother, more is sharper. At rest a redraw may "
+        "take up to a quarter of a second, if most of the time would go into redrawing otherwise",
         default=1.0 / 30.0,
         min=0.001,
         soft_min=1.0 / 120.0,

@@ -8,7 +8,7 @@ from .viewport_display import Layer
 #: How many finished pixels one of a picture is wide, from the finest on. None at 2: it would cost a quarter of the real
 #: one, for little.
 STEPS = (1, 4, 8, 16, 32)
-_FIRST_WIDTH = 16  # of a pixel on the screen, where nothing was measured
+_FIRST_WIDTH = 8  # of a pixel on the screen, where nothing was measured
 _MOST_WIDTH = 32  # of a pixel on the screen, in the coarsest picture
 _FINER = 0.6  # of the frame's seconds that a finer first picture may take to be preferred: else it would flicker
 
@@ -27,8 +27,7 @@ class ViewportPicture:
         self.step = 1  # of the film that is there or forms
         self._whole = self._kept = None  # layers: the last whole film of this view; what views before have shown
         self._edges = None  # of the film that forms, see `Layer`
-        self._seconds_per_pixel = None  # of the last first picture
-        self._first_step = 1  # of the last first picture
+        self._first_step = None  # of the last first picture
 
     @property
     def sample(self):
@@ -51,11 +50,9 @@ class ViewportPicture:
         self._kept = self._keep(view) if same_scene else None
         self.view, self._whole = view, None
         self._first_step = self._choose_step(seconds)
-        started = time.perf_counter()
         self._start(self._first_step)
         while self.session.step(seconds, tile_seconds=seconds):
             pass
-        self._seconds_per_pixel = (time.perf_counter() - started) / self._pixels(self.step)
         self._end_film()
         self._stack()
 
@@ -65,7 +62,7 @@ class ViewportPicture:
         self.session.film.samples = min(self.session.film.samples, self._samples)  # there may be fewer to draw now
         while not self.finished and (left := deadline - time.perf_counter()) > 0.0:
             if self.session.film.finished:
-                self._go_on()
+                self._go_on(left)
             if not self.session.step(left, tile_seconds=0.5 * seconds):
                 self._end_film()
         self._stack()
@@ -73,15 +70,20 @@ class ViewportPicture:
     # Films
 
     def _choose_step(self, seconds):
-        """The finest step whose picture is drawn in `seconds`; the one of last time as long as it roughly is."""
+        """The finest step whose picture is drawn in `seconds`; the one of last time as long as it roughly is. What a
+        draw takes whatever its pixels is left out: fewer would not spare it."""
         steps = self._steps_to(_MOST_WIDTH)
-        if self._seconds_per_pixel is None:
+        if self._first_step is None:
             return self._steps_to(_FIRST_WIDTH)[-1]
         for step in steps:
             allowed = seconds * (_FINER if step < self._first_step else 1.0)
-            if self._pixels(step) * self._seconds_per_pixel <= allowed:
+            if self._seconds(step) <= allowed:
                 return step
         return steps[-1]
+
+    def _seconds(self, step):
+        """What a sample of the film of a step is expected to take."""
+        return self._pixels(step) * self.session.pace.seconds_per_pixel
 
     def _steps_to(self, width):
         """The steps whose pixels are not wider than so many of the screen, one at least."""
@@ -99,10 +101,12 @@ class ViewportPicture:
         self.session.film.samples = 1
         self.step, self._edges = step, self.view.part(size, border)
 
-    def _go_on(self):
-        """The film has the samples that it was to have: go on to a finer one, or to those of the whole picture."""
+    def _go_on(self, seconds):
+        """The film has the samples that it was to have: go on to a finer one, the finest that is there in `seconds`, or
+        to the samples of the whole picture."""
         if self.step > 1:
-            self._start(STEPS[STEPS.index(self.step) - 1])
+            finer = STEPS[: STEPS.index(self.step)]
+            self._start(next((step for step in finer if self._seconds(step) <= seconds), finer[-1]))
         else:
             self.session.film.samples = self._samples
 

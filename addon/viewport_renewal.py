@@ -7,14 +7,15 @@ from .background_job import Job
 
 
 class Renewal:
-    """Takes the place of what a `LoadedScene` has: another thread prepares it, then `upload` brings it to the GPU, a
-    part at a time. Use it in the main thread. `statistics`: of this reading."""
+    """Takes the place of what a `LoadedScene` has: another thread runs `prepare(stopped)`, then `upload` brings the
+    `Update` that it returns to the GPU, a part at a time. Use it in the main thread. `statistics`: of the reading that
+    it began with, None for none."""
 
-    def __init__(self, loaded, scene, settings, statistics):
+    def __init__(self, loaded, prepare, statistics=None):
         self.statistics = statistics
         self._loaded = loaded
         self._stop = threading.Event()
-        self._job = Job(loaded.prepare, scene, settings, self._stop.is_set)
+        self._job = Job(prepare, self._stop.is_set)
         self._update = None  # what was prepared, once it is on its way to the GPU
 
     @property
@@ -24,7 +25,7 @@ class Renewal:
 
     @property
     def stopped(self):
-        """Whether it is to be dropped, once it is prepared: the next one may not be prepared at the same time."""
+        """Whether it is to be dropped, once it is prepared."""
         return self._stop.is_set()
 
     def wait(self, seconds):

@@ -4,6 +4,7 @@ once. It is freed with the last of them."""
 
 import traceback
 import weakref
+from functools import partial
 
 import bpy
 
@@ -30,10 +31,11 @@ class ViewportScene:
     """Blender's scene as viewports show it, read again when it has changed. Use it where the GPU context is active.
 
     `loaded`: the engine's `LoadedScene`. A change takes three parts: reading, here and now; preparing, in another
-    thread; and bringing it to the GPU, a little at each redraw. Meanwhile viewports draw what was loaded before. A
-    newer change waits until the one under way is through: where changes come faster than they can be loaded, as while
-    the mouse moves something, each would stop the one before and none would be shown. What is stopped is what nobody
-    will see: of a viewport that is closed, and of data that an undo or a file has replaced.
+    thread; and bringing it to the GPU, a little at each redraw. Meanwhile viewports draw what was loaded before. Large
+    trees are built quickly first; once a picture is there, good ones take their place, by the latter two parts. A newer
+    change waits until the one under way is through: where changes come faster than they can be loaded, as while the
+    mouse moves something, each would stop the one before and none would be shown. What is stopped is what nobody will
+    see: of a viewport that is closed, of data that an undo or a file has replaced, trees of what is drawn no more.
     """
 
     def __init__(self):
@@ -47,6 +49,7 @@ class ViewportScene:
         self.statistics = None  # of what is loaded, until its first picture is there
         self.sessions = weakref.WeakSet()  # the viewports that show it
         self._renewal = None  # the `Renewal` under way; what has changed since it was read makes this stale
+        self._better = None  # another one, of good trees for what is drawn
 
     @property
     def ready(self):
@@ -56,12 +59,14 @@ class ViewportScene:
     @property
     def preparing(self):
         """Whether another thread works, or has done so, on what the next `renew` takes."""
-        return self._renewal is not None and self._renewal.preparing
+        return any(renewal and renewal.preparing for renewal in (self._renewal, self._better))
 
     @property
     def prepared(self):
         """Whether the next `renew` has something to do at once."""
-        return self._renewal.wait(0.0) if self._renewal else self.stale
+        if self._renewal:
+            return self._renewal.wait(0.0)
+        return self.stale or (self._better is not None and self._better.wait(0.0))
 
     @property
     def settled(self):
@@ -77,26 +82,41 @@ class ViewportScene:
         """Nothing that was read before can be trusted."""
         self.stale = True
         self.reader.forget()
-        if self._renewal:
-            self._renewal.stop()
+        for renewal in filter(None, (self._renewal, self._better)):
+            renewal.stop()
 
-    def renew(self, depsgraph, view, space, seconds):
+    def renew(self, depsgraph, view, space, seconds, patience):
         """Bring what is loaded nearer to Blender's data: read it, or go on with what was read for about `seconds`.
-        Where that fails, what was loaded stays, and `error` tells why until the scene is read again."""
+        What takes no longer than `patience` to prepare shows at once. Where that fails, what was loaded stays, and
+        `error` tells why until the scene is read again."""
         try:
             if self._renewal and self._renewal.stopped and self._renewal.wait(0.0):
-                self._drop()
+                self._drop_renewal()
+            if self._better and (self._better.stopped or (self.stale and not self._better.preparing)):
+                self._drop_better()
             if self.stale and not self._renewal:
                 self._renewal = self._read(depsgraph, view, space)
-                self._renewal.wait(0.5 * seconds)  # it may be a small one, and then shows at once
+                self._renewal.wait(patience)
             if self._renewal and not self._renewal.wait(0.0):
                 _watch_jobs()
             elif self._renewal:
                 self._upload(seconds)
+            elif self._better and self._better.wait(0.0):
+                self._upload_better(seconds)
         except Exception as error:  # raised, it would be so at every redraw
             self._drop()
             self.error = explain(error, self.report)
             viewport_log.records.append(viewport_log.Load(error=self.error))
+
+    def improve(self, view):
+        """A picture of a `View` is there. If nothing else is to be done, cut strands finer that are too coarse for it,
+        and build good trees in the place of those that were built quickly."""
+        if self.settled and not self.error and self.reader.is_too_coarse(view.camera, view.size[1]):
+            self.stale = True
+            self.tag_redraw()
+        if self.loaded.can_improve and self.settled and not (self._better or self.error):
+            self._better = Renewal(self.loaded, self.loaded.prepare_better)
+            _watch_jobs()
 
     def _read(self, depsgraph, view, space):
         """Read the scene, and begin to prepare it: the `Renewal`."""
@@ -106,17 +126,28 @@ class ViewportScene:
         with timed(statistics.seconds, "read"):
             scene = self.reader.read(depsgraph, *view.size, camera=view.camera, space=space, statistics=found)
         statistics.add_reading(found)
-        return Renewal(self.loaded, scene, sync_settings(depsgraph.scene_eval, True), statistics)
+        settings = sync_settings(depsgraph.scene_eval, True)
+        return Renewal(self.loaded, partial(self.loaded.prepare, scene, settings, True), statistics)
 
     def _upload(self, seconds):
         """Bring what was prepared to the GPU, or a part of it."""
         if update := self._renewal.upload(0.5 * seconds):
             statistics, self._renewal = self._renewal.statistics, None
-            spent = {"read": statistics.seconds["read"], **update.seconds}
-            viewport_log.records.append(viewport_log.Load(update.change, dict(update.bytes), spent))
-            if update.change != Change.NONE:
+            self._drop_better()
+            self._log(update, {"read": statistics.seconds["read"]})
+            if update.change & Change.FILM:
                 self.statistics = statistics
             self.tag_redraw()  # viewports that have drawn already too
+
+    def _upload_better(self, seconds):
+        if update := self._better.upload(0.5 * seconds):
+            self._better = None
+            self._log(update, {})
+            self.tag_redraw()
+
+    @staticmethod
+    def _log(update, spent):
+        viewport_log.records.append(viewport_log.Load(update.change, dict(update.bytes), spent | update.seconds))
 
     def tag_redraw(self):
         """Have the viewports redrawn that show it."""
@@ -125,9 +156,18 @@ class ViewportScene:
 
     def _drop(self):
         """Forget what is under way."""
+        self._drop_renewal()
+        self._drop_better()
+
+    def _drop_renewal(self):
         if self._renewal:
             self._renewal.drop()
         self._renewal = None
+
+    def _drop_better(self):
+        if self._better:
+            self._better.drop()
+        self._better = None
 
     def __del__(self):
         """Free what the GPU holds here and now: the last reference may be that of another thread."""

@@ -10,12 +10,14 @@ from .engine import Session
 from .log_reporter import LogReporter
 from .statistics import primitives_text, publish
 from .viewport_display import Display
+from .viewport_pace import MOST, RedrawPace
 from .viewport_picture import ViewportPicture
 from .viewport_scenes import explain, scene_of
 from .viewport_view import view_of
 from .wording import counted
 
-_TRACING = 0.8  # of a frame's seconds; the rest is for showing what was traced, and for Blender
+_TRACING = 0.8  # of a redraw's seconds; the rest is for showing what was traced, and for Blender
+_LEAST = 0.5  # of a redraw's seconds, where what came before took long
 
 
 class ViewportSession:
@@ -23,7 +25,7 @@ class ViewportSession:
 
     def __init__(self, engine):
         self._engine = weakref.ref(engine)  # which holds this: in a circle nothing is freed when it should be
-        self.display = Display()
+        self.display, self.pace = Display(), RedrawPace()
         self.scene = None  # the `ViewportScene`
         self.picture = None  # the `ViewportPicture` of what is loaded
         self.version = None  # of what is loaded, in the picture
@@ -36,31 +38,39 @@ class ViewportSession:
 
     def tag_redraw(self):
         """Have this viewport redrawn, from anywhere in the main thread."""
-        engine = self._engine()
+        engine, self._asked = self._engine(), True
         if engine is not None:
             engine.tag_redraw()
 
     def draw(self, context, depsgraph):
         """Draw into the bound frame buffer, and ask for another redraw while there is more to do."""
-        started = time.perf_counter()
+        started, self._asked = time.perf_counter(), False
+        self.pace.begin()
         settings = depsgraph.scene.conic
         try:
             self._attach(context.space_data, depsgraph)
-            seconds = settings.preview_frame_seconds / (1 + self._others())
+            frame = settings.preview_frame_seconds / (1 + self._others())
             view = view_of(context, depsgraph, self._engine().get_preview_pixel_size(depsgraph.scene))
             if not settings.preview_pause:
-                self.scene.renew(depsgraph, view, context.space_data, seconds)
-                if self.scene.prepared:
-                    self.tag_redraw()
+                self._renew(depsgraph, view, context.space_data, frame)
             self.error = self.scene.error
             if self.scene.ready and not view.is_empty:
-                left = _TRACING * seconds - (time.perf_counter() - started)
-                began = self._show(view, max(left, 0.3 * seconds), settings.preview_pause)
+                began = self._show(view, frame, started, settings.preview_pause)
                 self._log(began, time.perf_counter() - started)
         except Exception as error:  # a view that raises would do so at every redraw
             self.error = explain(error, self.scene.report if self.scene else LogReporter())
             self.picture = None  # it may have ended half way: the next redraw begins anew
         self._tell(settings.preview_pause, time.perf_counter() - started)
+        self.pace.end(self._asked)
+
+    def _renew(self, depsgraph, view, space, frame):
+        """Bring the scene nearer to Blender's data. Without a picture nobody waits for another redraw."""
+        if not self.scene.settled:
+            self.pace.changed()
+        seconds = self.pace.seconds(frame) if self.scene.ready else MOST
+        self.scene.renew(depsgraph, view, space, seconds, max(0.5 * seconds, self.pace.overhead))
+        if self.scene.prepared:
+            self.tag_redraw()
 
     def _others(self):
         """How many other viewports of the scene have pictures that form, and share the time of a frame."""
@@ -76,14 +86,19 @@ class ViewportSession:
             self.scene, self.picture, self.version = scene, None, None
             scene.sessions.add(self)
 
-    def _show(self, view, seconds, paused):
-        """Trace for about `seconds`, and show what is there; whether the picture has begun anew."""
+    def _show(self, view, frame, started, paused):
+        """Trace, and show what is there; whether the picture has begun anew. `frame`: what a redraw may take while
+        something happens; `started`: when this one has."""
         loaded = self.scene.loaded
         if self.picture is None:
             self.picture = ViewportPicture(Session(self.scene.device, loaded))
         picture = self.picture
         same_scene = self.version == loaded.version
         began = not same_scene or picture.view is None or picture.view.key != view.key
+        if began:
+            self.pace.changed()
+        seconds = self.pace.seconds(frame)
+        seconds = max(_TRACING * seconds - (time.perf_counter() - started), _LEAST * seconds)
         if began:
             self.version = loaded.version
             picture.begin(view, seconds, same_scene)
@@ -93,6 +108,8 @@ class ViewportSession:
         self.display.draw(picture.layers, view)
         if not picture.finished and not paused:
             self.tag_redraw()
+        if picture.sample and not paused:
+            self.scene.improve(view)
         return began
 
     def _log(self, began, seconds):

@@ -20,5 +20,6 @@ class Change(Flag):
     INSTANCES = auto()  #: records of instances and the tree over them
     REFIT = auto()  #: a geometry's records and boxes; its tree keeps its form
     GEOMETRY = auto()  #: a geometry came or went; the tree of a new one is built
+    TREES = auto()  #: trees that were built quickly gave way to good ones; alone, the picture goes on
     PROGRAM = auto()  #: another program of the GPU, which may have to be compiled
     ALL_TEXTURES = auto()  #: everything lies elsewhere

@@ -80,10 +80,9 @@ class Parameter(Expression):
     type: str = ""
 
     def __post_init__(self):
-        value = np.atleast_1d(np.asarray(self.value, np.float64))
-        with np.errstate(invalid="ignore"):
-            value = np.where(np.abs(value) <= _LARGEST, value, 0.0)  # neither NaN nor beyond float32
-        object.__setattr__(self, "value", tuple(value.tolist()))
+        value = np.atleast_1d(np.asarray(self.value, np.float64)).tolist()
+        value = tuple(x if abs(x) <= _LARGEST else 0.0 for x in value)  # neither NaN nor beyond float32
+        object.__setattr__(self, "value", value)
         object.__setattr__(self, "type", self.type or _TYPES[len(value)])
 
 
@@ -208,9 +207,8 @@ def _folded(twin, inputs, kind):
     if twin is None or not all(map(is_constant, inputs)):
         return None
     with np.errstate(all="ignore"):
-        value = np.atleast_1d(twin(*(np.array(x.value) for x in inputs)))
-    value = np.broadcast_to(value, (_SIZES[kind],))
-    made = Parameter(tuple(value.tolist()), kind)
+        values = np.atleast_1d(twin(*(np.array(x.value) for x in inputs))).tolist()
+    made = Parameter(tuple(values * _SIZES[kind] if len(values) == 1 else values), kind)
     return made if any(isinstance(x, Parameter) for x in inputs) else Literal(made.value, kind)
 
 

@@ -9,7 +9,13 @@ TILE_SECONDS = 0.04
 #: The alpha of a sample that the driver gave up: far above what samples sum up to.
 UNENDED_ALPHA = 1e30
 _FIRST_TILE_PIXELS = 4096
-_BAND_ROWS = 8
+#: Bands of a film whose pixels are known to cost as much as each other.
+_BANDS = 32
+#: How many times more or less pixels may be said to cost by what one tile took.
+_MOST_CHANGE = 4.0
+#: Seconds that a draw may be said to take for no pixels.
+_MOST_FIXED = 0.004
+_BAND_ROWS, _TILE_COLUMNS = 8, 16  # at least
 
 
 @dataclass(frozen=True)
@@ -29,24 +35,41 @@ def sample_offset(sample):
     return np.mod(0.5 + sample * np.array([1.0 / plastic, 1.0 / plastic**2]), 1.0)
 
 
-@dataclass
 class Pace:
-    """How many pixels a tile of TILE_SECONDS has: learned from tile to tile, and kept from picture to picture."""
+    """What pixels cost in each of some bands of a film's height: learned from tile to tile, and kept from picture to
+    picture, which mostly have the dear ones in the same place."""
 
-    pixels_per_tile: float = _FIRST_TILE_PIXELS
+    def __init__(self):
+        self._costs = np.full(_BANDS, TILE_SECONDS / _FIRST_TILE_PIXELS)  # seconds of a pixel
+        self._fixed = _MOST_FIXED  # seconds of a draw of no pixels
 
     @property
     def seconds_per_pixel(self):
-        return TILE_SECONDS / self.pixels_per_tile
+        """Of all bands."""
+        return float(self._costs.mean())
 
-    def pixels(self, seconds):
-        """How many pixels take about `seconds`, at least 1."""
-        return max(int(self.pixels_per_tile * seconds / TILE_SECONDS), 1)
+    def rows(self, seconds, first, film):
+        """How many rows of a `Film` from number `first` on take about `seconds`, a real number."""
+        costs = self._costs[np.arange(first, film.height) * _BANDS // film.height] * film.width
+        ends = np.cumsum(costs)
+        whole = int(np.searchsorted(ends, seconds))
+        if whole == len(ends):
+            return float(whole)
+        return whole + (seconds - (ends[whole - 1] if whole else 0.0)) / costs[whole]
 
-    def learn(self, pixels, seconds):
-        """So many pixels took `seconds`. One measure may be wrong: it does not change much at once."""
-        wanted = pixels * TILE_SECONDS / max(seconds, 1e-6)
-        self.pixels_per_tile = float(np.clip(wanted, self.pixels_per_tile / 4, self.pixels_per_tile * 4))
+    def learn(self, tile, film, seconds):
+        """A tile of a `Film` took `seconds`. One measure may be wrong: it does not change much at once. Other bands may
+        have changed as well: they follow it half the way."""
+        _, y, width, height = tile.rectangle
+        self._fixed = min(self._fixed, seconds)
+        bands = np.arange(y, y + height) * _BANDS // film.height
+        expected = float(self._costs[bands].sum()) * width
+        change = np.clip(max(seconds - self._fixed, 0.5 * seconds) / expected, 1.0 / _MOST_CHANGE, _MOST_CHANGE)
+        if seconds < 2.0 * self._fixed:
+            change = min(change, 1.0)  # of so few pixels it is not known what more would cost
+        factors = np.full(_BANDS, np.sqrt(change))
+        factors[bands] = change
+        self._costs *= factors
 
 
 class Film:
@@ -91,17 +114,17 @@ class Film:
 
     def next_tile(self, seconds=TILE_SECONDS):
         """The tile to draw now, of a size that takes about `seconds`; `advance` says that it was drawn."""
-        wanted = self.pace.pixels(seconds)
+        rows = self.pace.rows(seconds, self._y, self)
         if self._x == 0:
-            self._band = int(min(max(wanted // self.width, _BAND_ROWS), self.height - self._y))
+            self._band = int(min(max(rows, _BAND_ROWS), self.height - self._y))
         width = self.width - self._x
-        if wanted < self.width * self._band:
-            width = min(width, max(16, wanted // self._band))
+        if rows < self._band:
+            width = min(width, max(_TILE_COLUMNS, int(self.width * rows / self._band)))
         return Tile((self._x, self._y, width, self._band), self._sample)
 
     def advance(self, tile, seconds):
         """A tile was drawn in `seconds`: go on to the next."""
-        self.pace.learn(tile.rectangle[2] * tile.rectangle[3], seconds)
+        self.pace.learn(tile, self, seconds)
         self._x += tile.rectangle[2]
         if self._x >= self.width:
             self._x, self._y = 0, self._y + self._band

@@ -16,7 +16,7 @@ from .film import UNENDED_ALPHA
 from .new_textures import NewTextures
 from .packed_scene import PackedScene, table_changes
 from .packing import pack
-from .scene import Camera
+from .scene import Camera, Scene
 from .settings import Settings
 from .shader_source import ProgramSource
 from .timing import timed
@@ -38,10 +38,13 @@ _ASK_FOR_INSTANCES = {"HAS_VISIBILITY", "HAS_SHADOW_CATCHER", "HAS_LIGHT_LINKING
 class Update:
     """What `LoadedScene.prepare` made for `LoadedScene.apply`.
 
-    `change`: what differs from the scene before. `bytes`: to upload, by texture. `seconds`: by stage. `warnings`:
-    sentences for the user.
+    `before`: the `DrawnScene` whose place it takes, None for none. `scene`: what was packed, None unless its trees are
+    to be improved. `change`: what differs from the scene before. `bytes`: to upload, by texture. `seconds`: by stage.
+    `warnings`: sentences for the user.
     """
 
+    before: object = field(repr=False)
+    scene: Scene | None = field(repr=False)
     packed: PackedScene
     settings: Settings
     camera: Camera
@@ -53,16 +56,23 @@ class Update:
     job: object = field(default=None, repr=False)  # what `apply` still has to do, an iterator of steps
     made: list = field(default_factory=list, repr=False)  # textures that are there already
 
+    @property
+    def improves(self):
+        """Whether all that differs are better trees: of the same picture."""
+        return bool(self.change & Change.TREES) and not self.change & Change.FILM
+
 
 @dataclass(eq=False)
 class DrawnScene:
     """All that a draw needs. `textures` and the texels that there is room for are by name; `source` and `features`
-    are those of the `program`."""
+    are those of the `program`. `scene`: what it was made of, None unless its trees are to be improved."""
 
+    scene: Scene | None
     packed: PackedScene
     settings: Settings
     camera: Camera
     world_light: WorldLight | None
+    world_digest: bytes
     textures: dict
     rooms: dict
     source: ProgramSource
@@ -132,51 +142,75 @@ class LoadedScene:
         self.device, self.lasting = device, lasting
         self.drawn, self.version = None, 0
         self.warnings, self.seconds = [], {}
-        self._world_digest = b""  # of the world whose light is there
 
     # The processor's part
 
-    def prepare(self, scene, settings, stopped=None):
-        """The `Update` to a scene. It touches no GPU and may run in any thread, while sessions draw what is there; but
-        not while `apply` works on another update. It may be dropped. Raises StoppedError soon after `stopped()`."""
+    def prepare(self, scene, settings, quick=False, stopped=None):
+        """The `Update` to a scene. It touches no GPU and may run in any thread, while sessions draw what is there. It
+        may be dropped, and must be where another one is applied before it. `quick`: build large trees in a fraction of
+        the time, until `prepare_better` has built good ones; rays are slower meanwhile. Raises StoppedError soon after
+        `stopped()`."""
         if settings.outlines and settings.outlines.around == "ATTRIBUTE" and not scene.outline_attribute:
             raise SceneError("outlines go around the values of an attribute, but the scene does not say of which")
-        residency = self.drawn.packed.residency if self.drawn else None
-        packed = pack(scene, self.device.max_texture_size, residency, keep=self.lasting, stopped=stopped)
+        return self._prepare(self.drawn, scene, settings, quick, stopped)
+
+    @property
+    def can_improve(self):
+        """Whether what is drawn has trees that were built quickly."""
+        return self.drawn is not None and self.drawn.scene is not None
+
+    def prepare_better(self, stopped=None):
+        """As `prepare`, the update to the same scene with good trees, where it `can_improve`. Pictures go on; but not
+        those with lines, which are drawn where the places of neighbours in the textures differ."""
+        before = self.drawn
+        update = self._prepare(before, before.scene, before.settings, quick=False, stopped=stopped)
+        update.change = Change.TREES | (Change.FILM if before.settings.outlines else Change.NONE)
+        return update
+
+    def _prepare(self, before, scene, settings, quick, stopped):
+        packed = pack(
+            scene,
+            self.device.max_texture_size,
+            before.packed.residency if before else None,
+            keep=self.lasting,
+            quick=quick,
+            stopped=stopped,
+        )
         digest = world_digest(packed) if settings.world_light != "NONE" else b""
         return Update(
+            before=before,
+            scene=scene if packed.residency.is_quick else None,
             packed=packed,
             settings=settings,
             camera=scene.camera,
             world_digest=digest,
-            change=self._changes(packed, settings, digest),
+            change=self._changes(before, packed, settings, digest),
             bytes={},
             seconds=dict(packed.statistics["seconds"]),
             warnings=packed.warnings_with(settings),
         )
 
-    def _changes(self, packed, settings, world_digest):
-        """The `Change` from what is there."""
-        before = self.drawn
+    def _changes(self, before, packed, settings, world_digest):
+        """The `Change` from the `DrawnScene` before."""
         if before is None:
             return ~Change.NONE
         change = packed.change | table_changes(before.packed, packed)
-        if world_digest != self._world_digest:
+        if world_digest != before.world_digest:
             change |= Change.WORLD
-        light = before.world_light if world_digest == self._world_digest else world_digest or None
-        if self._source(packed, settings, light)[0] != before.source:
+        light = before.world_light if world_digest == before.world_digest else world_digest or None
+        if self._source(before, packed, settings, light)[0] != before.source:
             change |= Change.PROGRAM
         return change | Change.FILM if change or not settings.draws_as(before.settings) else change
 
-    def _source(self, packed, settings, world_light):
+    def _source(self, before, packed, settings, world_light):
         """(Source, features) of the program: the one that is there if it can draw things that the scene has no more,
         for compiling takes seconds; else the one that has no more than it needs."""
         features = _features(packed, settings, world_light)
-        if self.lasting and self.drawn:
-            spare = (self.drawn.features - features) & _SPARE_FEATURES
+        if self.lasting and before:
+            spare = (before.features - features) & _SPARE_FEATURES
             if spare and not features & _ASK_FOR_INSTANCES:
                 source = _source(packed, settings, features | spare)
-                if source == self.drawn.source:
+                if source == before.source:
                     return source, features | spare
         return _source(packed, settings, features), features
 
@@ -187,6 +221,8 @@ class LoadedScene:
 
         Until then, and if it fails, the scene before is there as it was.
         """
+        if update.before is not self.drawn:
+            raise RuntimeError("an update to a scene was prepared before another one was applied")
         deadline = np.inf if seconds is None else time.perf_counter() + seconds
         update.job = update.job or self._apply(update, in_pieces=seconds is not None)
         try:
@@ -207,43 +243,54 @@ class LoadedScene:
 
     def _apply(self, update, in_pieces):
         """Do what `update` takes, step by step."""
-        packed, before = update.packed, self.drawn
+        packed, before = update.packed, update.before
         new = NewTextures(self.device, update, before, in_pieces)
         while packed.uploads:  # one after the other: each is freed here as soon as it is there
             name, upload = packed.uploads.popitem()
             yield from new.add(name, upload)
             del upload
         yield
-        with timed(update.seconds, "upload"):
-            light = self._world_light(update, new)
+        light = yield from self._world_light(update, new)
         yield
         with timed(update.seconds, "compile"):
-            source, features = self._source(packed, update.settings, light)
+            source, features = self._source(before, packed, update.settings, light)
             program = self.device.program(source)
             new.complete(source.textures)
             drawn = DrawnScene(
-                packed, update.settings, update.camera, light, new.textures, new.rooms, source, features, program
+                scene=update.scene,
+                packed=packed,
+                settings=update.settings,
+                camera=update.camera,
+                world_light=light,
+                world_digest=update.world_digest,
+                textures=new.textures,
+                rooms=new.rooms,
+                source=source,
+                features=features,
+                program=program,
             )
             if before is None or source != before.source:
-                update.change |= Change.PROGRAM | Change.FILM
+                update.change |= Change.PROGRAM | (Change.NONE if update.improves else Change.FILM)
                 yield
                 drawn.draw_outside(self.device)  # drivers leave much of their work to the first draw
-        self.drawn, update.made = drawn, []
+        self.drawn, update.before, update.made = drawn, drawn, []
         self.warnings, self.seconds = update.warnings, update.seconds
-        self._world_digest = update.world_digest
-        self.version += bool(update.change)
-        kept = set(map(id, drawn.textures.values()))
-        self._release([texture for texture in before.textures.values() if id(texture) not in kept] if before else [])
+        self.version += bool(update.change & Change.FILM)
+        if before:
+            textures, before.textures = before.textures, {}
+            kept = set(map(id, drawn.textures.values()))
+            self._release([texture for texture in textures.values() if id(texture) not in kept])
 
     def _world_light(self, update, new):
-        """The `WorldLight` of an update; its texture is uploaded where samples need it."""
-        if update.world_digest == self._world_digest:
-            light = self.drawn.world_light if self.drawn else None
+        """Make the `WorldLight` of an update, step by step; its texture is uploaded where samples need it."""
+        before, digest = update.before, update.world_digest
+        if before and digest == before.world_digest:
+            light = before.world_light
         else:
-            light = light_of_world(self.device, update.packed, new.textures) if update.world_digest else None
+            light = (yield from light_of_world(self.device, update.packed, new.textures)) if digest else None
         if not (light and update.settings.samples_world):
             new.leave_out("world_light")
-        elif "world_light" not in new.textures or light is not self.drawn.world_light:
+        elif "world_light" not in new.textures or light is not before.world_light:
             new.put("world_light", light.texels)
         return light
 
@@ -253,8 +300,8 @@ class LoadedScene:
         return {name: 16 * room for name, room in self.drawn.rooms.items()} if self.drawn else {}
 
     def free(self):
-        """Give back the textures, here and now: the thread of a `prepare` that nobody waits for does not keep them.
-        Programs stay with the device."""
+        """Give back the textures, here and now: the thread of a `prepare` that nobody waits for does not keep them, as
+        it does the `DrawnScene`. Programs stay with the device."""
         if self.drawn:
             textures, self.drawn.textures = self.drawn.textures, {}
             self._release(list(textures.values()))

@@ -26,6 +26,8 @@ from .settings import SHADOWS
 from .timing import timed
 from .tree_packing import QUICK_FROM, AttributeWriter, TreePacker, pieces, rows_by_kind
 
+#: Levels that a good tree may have more than a quick one without another program.
+_DEEPER = 6
 #: Blocks of instances that are checked together, where they are small.
 _BLOCKS = 256
 
@@ -334,9 +336,10 @@ class _Packer:
 
     def _stack_size(self, needed):
         """References that can wait in a traversal, rounded up so that few programs are made; as before, if that is not
-        much too large."""
-        size = -(-needed // 8) * 8
-        if not needed <= self.before.stack_size <= size + 16:
+        much too large. Good trees are often a little deeper than quick ones, and those much deeper where shapes crowd.
+        """
+        size = -(-(needed + _DEEPER * self.residency.is_quick) // 8) * 8
+        if not needed <= self.before.stack_size <= size + 32:
             self.residency.stack_size = size
         return self.residency.stack_size
 

@@ -130,6 +130,11 @@ class Residency:
         return new
 
     @property
+    def is_quick(self):
+        """Whether a tree was built quickly, for the time being."""
+        return any(resident.quick for resident in (*self.geometries.values(), self.instances) if resident)
+
+    @property
     def numbers(self):
         """Numbers of the geometries by the identity of the weak reference to each: there is only one to a thing, and it
         stays the same when the thing is gone."""

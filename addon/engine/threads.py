@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 
 LARGE = 1 << 17  # boxes, primitives from which on threads pay
-MOST_THREADS = 8  # memory is no faster for more
+MOST_THREADS = 4  # memory is hardly faster for more, and each needs room for what it works on
 
 
 def each(function: Callable, items: Iterable, *, worth_it: bool) -> list:

@@ -38,11 +38,12 @@ class WorldLight:
 
     @classmethod
     def of_map(cls, radiance):
-        radiance = np.maximum(np.nan_to_num(np.asarray(radiance), posinf=0.0), 0.0)
-        brightness = np.asarray(radiance @ LUMINANCE, np.float64)
+        radiance = np.fmax(radiance, np.float32(0.0))  # 0 where it is NaN
+        radiance[np.isinf(radiance)] = 0.0
+        brightness = radiance @ LUMINANCE.astype(radiance.dtype)
         is_black = not brightness.any()
         brightness = _with_rims(brightness)
-        brightness /= max(brightness.mean(), 1e-300)
+        brightness = (brightness / max(brightness.mean(dtype=np.float64), 1e-300)).astype(np.float32)
         tree = _tree(brightness)
         texture = layout.data_texture(len(tree))
         texture.reshape(-1, 4)[: len(tree)] = tree
@@ -69,17 +70,18 @@ def world_digest(packed):
 
 
 def light_of_world(device, packed, textures):
-    """The `WorldLight` of a `PackedScene` whose `textures` are on the device; None of a black world."""
+    """The `WorldLight` of a `PackedScene` whose `textures` are on the device; None of a black world. A generator that
+    returns it, and yields between draws."""
     constant = constant_of(packed.world.radiance)
     if constant is None:
-        light = WorldLight.of_map(_draw_map(device, packed, textures))
+        light = WorldLight.of_map((yield from _draw_map(device, packed, textures)))
     else:
         light = WorldLight.of_map(np.broadcast_to(constant, (_SIDE, _SIDE, 3)))
     return None if light.is_black else light
 
 
 def _draw_map(device, packed, textures):
-    """The map (n, n, 3) of a world that is not the same everywhere."""
+    """The map (n, n, 3) of a world that is not the same everywhere, as `light_of_world`."""
     programs, _ = packed.world_programs
     features = programs.features() | {"HAS_PROGRAMS"}
     generated = (("programs_lib.glsl", programs.text()),)
@@ -96,6 +98,7 @@ def _draw_map(device, packed, textures):
     whole = (0, 0, side, side)
     try:
         for k in range(samples**2):  # a draw each: none takes long
+            yield
             offset = (np.array([k % samples, k // samples]) + 0.5) / samples - 0.5
             frame["raster"] = (1.0 / side, 1.0 / side, *(offset / side))
             device.draw(program, target, whole, textures, frame.view(np.float32))
@@ -137,7 +140,9 @@ def irradiance(radiance):
 def _reduced(cells):
     """A map (m, m, k) float64 of at most _SIDE cells a side, by means over those of (n, n, k)."""
     step = max(len(cells) // _SIDE, 1)
-    return cells.reshape(len(cells) // step, step, -1, step, cells.shape[-1]).mean(axis=(1, 3), dtype=np.float64)
+    side, kinds = len(cells) // step, cells.shape[-1]
+    rows = cells.reshape(side, step, -1).sum(axis=1, dtype=np.float64)  # one after the other: several times faster
+    return rows.reshape(side, side, step, kinds).sum(axis=2) / step**2
 
 
 def _with_rims(brightness):

@@ -34,15 +34,21 @@ vec4 shown(ivec2 texel)
   return lines > 0.0 ? with_lines(texel, color) : color;
 }
 
-/* Between the middles of four texels. */
-vec4 shown_between(vec2 position, ivec2 last)
+/* A texel, or another one where no sample has reached it yet. */
+vec4 shown_or(ivec2 texel, ivec2 other)
+{
+  return shown(samples_of(texel) < 0.5 ? other : texel);
+}
+
+/* Between the middles of four texels, of which `here` is the one that the position is in. */
+vec4 shown_between(vec2 position, ivec2 here, ivec2 last)
 {
   vec2 corner = floor(position - 0.5);
   vec2 share = position - 0.5 - corner;
   ivec2 low = clamp(ivec2(corner), ivec2(0), last);
   ivec2 high = clamp(ivec2(corner) + 1, ivec2(0), last);
-  vec4 bottom = mix(shown(low), shown(ivec2(high.x, low.y)), share.x);
-  vec4 top = mix(shown(ivec2(low.x, high.y)), shown(high), share.x);
+  vec4 bottom = mix(shown_or(low, here), shown_or(ivec2(high.x, low.y), here), share.x);
+  vec4 top = mix(shown_or(ivec2(low.x, high.y), here), shown_or(high, here), share.x);
   return mix(bottom, top, share.y);
 }
 
@@ -54,5 +60,5 @@ void main()
   if (samples_of(texel) < 0.5) {
     discard;
   }
-  out_color = smoothed > 0.5 ? shown_between(position, size - 1) : shown(texel);
+  out_color = smoothed > 0.5 ? shown_between(position, texel, size - 1) : shown(texel);
 }

@@ -6,6 +6,7 @@ where a node lacks a part, which is then a literal zero.
 """
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -83,7 +84,8 @@ class Lobes:
         if not _same(self.normal, other.normal):
             self, other = self._with_normal(), other._with_normal()
         for name, weigh in _MEANS.items():
-            summed[name] = _mean_of(getattr(self, name), weigh(self), getattr(other, name), weigh(other))
+            mine, its = getattr(self, name), getattr(other, name)
+            summed[name] = mine if _same(mine, its) else _mean_of(mine, weigh(self), its, weigh(other))
         told = self.one_roughness or other.one_roughness or _look_different(self, other)
         return Lobes(**summed, one_roughness=told)
 
@@ -100,7 +102,7 @@ class Lobes:
         """The same with a shading normal, 0 for the surface's own."""
         return replace(self, normal=normal)
 
-    @property
+    @cached_property
     def reflectance(self):
         """Share that is reflected at normal incidence, but by the coat."""
         by_fresnel = _reflected(self.varnish, self.varnish_ior) + _reflected(self.glass, self.ior)

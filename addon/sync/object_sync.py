@@ -80,9 +80,9 @@ class ObjectSync:
         strands = [copies for copies in self._fresh() if copies.kind in STRANDS]
         self._links = LightLinks(lights, reports)
         self._visibilities = Visibilities(depsgraph.view_layer, self._links)
-        self._pixels = PixelSizes(scene.camera, height, strands)
-        memory.get("pixel sizes", self._pixels.settle, version=object())
-        self._contents = Contents(depsgraph, self._pixels, memory)
+        self.pixels = PixelSizes(scene.camera, height, strands)
+        memory.get("pixel sizes", self.pixels.settle, version=object())
+        self._contents = Contents(depsgraph, self.pixels, memory)
         self._common = memory.get("common", lambda _: object(), (self._common_key(), self._links.groups))
         self._parts = []
 
@@ -199,7 +199,7 @@ class ObjectSync:
     def _drawn(self, copies, shadings):
         """Yield the contents of copies, each with the shadings of its slots."""
         key = self._contents.key(copies), tuple(shading.needs for shading in shadings)
-        pixel = self._pixels.of(copies) if copies.kind in STRANDS else None
+        pixel = self.pixels.of(copies) if copies.kind in STRANDS else None
         version = self._depsgraph.scene_eval.conic.recognise, pixel
         drawn = self._memory.get(("drawn", *key), lambda _: self._contents.of(copies, shadings), version)
         for note in drawn.notes:

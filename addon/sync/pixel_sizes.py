@@ -20,19 +20,26 @@ class PixelSizes:
     _NEAREST = 0.02
 
     def __init__(self, camera, height, all_copies):
-        self._camera = camera
-        self._at_one = (camera.window[3] - camera.window[2]) / height
-        self._least, self._owners = {}, {}
+        self._least, self._owners, self._places = {}, {}, {}
         for copies in all_copies:
             if copies.kind in STRANDS:
-                key = self._key(copies)
+                key, places = self._key(copies), _places(copies)
                 self._owners.setdefault(key, (copies.kind, original_key(copies.obj)))
-                self._least[key] = min(self._least.get(key, np.inf), self._length(copies))
+                self._places.setdefault(key, []).append(places)
+                self._least[key] = min(self._least.get(key, np.inf), self._length(places, camera, height))
 
     def of(self, copies):
         """The length, for all copies of the data in the scene."""
         length = self._least.get(self._key(copies), np.inf)
         return length if np.isfinite(length) else 1.0
+
+    def are_too_long(self, camera, height):
+        """Whether another camera sees pixels that are less than half as long, in a picture of this height."""
+        return any(
+            self._length(places, camera, height) < 0.5 * self._least[key]
+            for key, all_places in self._places.items()
+            for places in all_places
+        )
 
     def settle(self, known):
         """Keep to the lengths of an earlier read, as this gave them, where they are no more than twice or half as long;
@@ -46,20 +53,26 @@ class PixelSizes:
     def _key(self, copies):
         return copies.kind, data_key(copies.data)
 
-    def _length(self, copies):
-        low, high = _bounds(copies)
-        matrices = copies.matrices.astype(np.float64)
-        scale = np.linalg.norm(matrices[:, :3, :3], axis=1).max(axis=1)
-        center = matrices[:, :3, :3] @ ((low + high) / 2.0) + matrices[:, :3, 3]
-        radius = scale * np.linalg.norm(high - low) / 2.0
+    def _length(self, places, camera, height):
+        center, radius, scale = places
         distance = np.ones(len(scale))
-        if not self._camera.orthographic:
-            distance = np.linalg.norm(center - self._camera.matrix[:3, 3], axis=1) - radius
+        if not camera.orthographic:
+            distance = np.linalg.norm(center - camera.matrix[:3, 3], axis=1) - radius
             distance = np.maximum(distance, self._NEAREST * radius)
         with np.errstate(divide="ignore", invalid="ignore"):
-            length = self._at_one * distance / scale
+            length = (camera.window[3] - camera.window[2]) / height * distance / scale
         length = length[np.isfinite(length) & (length > 0.0)]
         return float(length.min()) if len(length) else np.inf
+
+
+def _places(copies):
+    """Of copies the center (n, 3) and radius (n,) of balls that they are in, and how much larger they are (n,) than the
+    data."""
+    low, high = _bounds(copies)
+    matrices = copies.matrices.astype(np.float64)
+    scale = np.linalg.norm(matrices[:, :3, :3], axis=1).max(axis=1)
+    center = matrices[:, :3, :3] @ ((low + high) / 2.0) + matrices[:, :3, 3]
+    return center, scale * np.linalg.norm(high - low) / 2.0, scale
 
 
 def _bounds(copies):

@@ -56,6 +56,7 @@ class SceneReader:
         self._material_numbers, self._image_numbers = {}, {}
         self._objects = [], np.empty((0, 4, 4), np.float32)
         self._states, self._frame, self._graph = {}, None, None
+        self._pixels = None  # the `PixelSizes` that strands were cut for, None where they are cut in any number
 
     def mark(self, depsgraph):
         """Take note of what Blender says has changed: call it in each `view_update`, as often as one likes."""
@@ -65,6 +66,10 @@ class SceneReader:
         """Nothing that was read is to be trusted, as after undo or when a file was loaded: the next read is a full one.
         What then comes out equal is still the same object."""
         self._changes.everything = True
+
+    def is_too_coarse(self, camera, height):
+        """Whether strands, as they were read, are too coarse for an engine Camera and a picture of this height."""
+        return self._pixels is not None and self._pixels.are_too_long(camera, height)
 
     def read(self, depsgraph, width, height, *, engine=None, camera=None, space=None, statistics=None):
         """The Scene of a depsgraph, for a frame of width x height pixels. Raises SceneError where there is no camera.
@@ -103,6 +108,7 @@ class SceneReader:
             statistics.objects |= objects.read()
         with timed(statistics.seconds, "place"):
             objects.place()
+        self._pixels = objects.pixels if depsgraph.scene_eval.conic.curve_sampling != "FIXED" else None
         self._end(scene, images)
         return scene
 

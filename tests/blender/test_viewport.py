@@ -12,9 +12,13 @@ import pytest
 
 from addon import viewport_log, viewport_scenes, viewport_session
 from addon.engine import DeviceError, LoadedScene, SceneError, loaded_scene
+from addon.engine.changes import Change
 from addon.engine.devices.blender_gpu import BlenderDevice
 from addon.engine.packing import pack
+from addon.engine.tree_packing import QUICK_FROM
+from addon.operators.nff_shapes import new_point_cloud
 from addon.sync.scene_reader import SceneReader
+from addon.viewport_pace import MOST, RedrawPace
 from addon.viewport_picture import STEPS
 from tests.blender.viewport_stand_in import HEIGHT, WIDTH, StandIn, draws, loads, mark
 
@@ -159,7 +163,7 @@ def test_the_first_picture_has_as_many_pixels_as_the_frame_allows(view):
         (20.0, 4, 8),
         (1e6, 1, STEPS[-1]),
     ):
-        picture._seconds_per_pixel, picture._first_step = spent / pixels, before
+        picture.session.pace._costs[:], picture._first_step = spent / pixels, before
         assert picture._choose_step(1.0) == step, (spent, before)
 
 
@@ -181,6 +185,29 @@ def test_the_display_divides_what_the_film_sums_up(view, outlines):
     assert len(seen) > 1
 
 
+def test_what_forms_has_no_dark_rim(view):
+    """A coarse film is smooth where it is, whatever is to come beside it."""
+    view.settle()
+    bpy.context.object.hide_viewport = True  # all is the bright sky
+    bpy.context.scene.conic.preview_frame_seconds = 0.001
+    view.settle()
+    view.look_from(0.5)
+    view.redraw()
+    picture = view.session.picture
+    picture._start(4)
+    picture.session._film.pace._costs[:] = 1.0
+    for _ in range(3):
+        picture.session.step(1e-9, tile_seconds=1e-9)
+    assert picture.session.film.reached[3] > 0, "it stops within a row"
+    layer = picture._layer()
+    with view.framebuffer.bind():
+        view.framebuffer.clear(color=(0.0, 0.0, 0.0, 0.0))
+        view.session.display.draw([layer], picture.view)
+    pixels = view.pixels()
+    drawn = pixels[..., 3] > 0.0
+    assert 0 < drawn.sum() < drawn.size and pixels[drawn].min() > 0.99
+
+
 def test_large_pixels(view):
     view.engine.pixel_size = 4
     pixels = view.settle()
@@ -194,7 +221,7 @@ def test_what_was_seen_before_is_shown_where_it_is_still_right(view, change):
     """With a first picture of few pixels, the old one is as sharp as before, in its new place."""
     view.settle()
     bpy.context.scene.conic.preview_frame_seconds = 0.001
-    view.session.picture._seconds_per_pixel = 1.0
+    view.session.picture.session.pace._costs[:] = 1.0
     view.settle()
     if change == "pan":
         view.look_from(1.0)
@@ -435,9 +462,10 @@ def test_what_is_prepared_for_nobody_keeps_nothing_on_the_gpu(view, monkeypatch)
     bpy.context.object.location.x = 1.0
     view.redraw()
     assert began.wait(60.0)
-    drawn = weakref.ref(view.session.scene.loaded.drawn)
+    drawn = view.session.scene.loaded.drawn
+    assert drawn.textures
     view.close()
-    assert drawn() is None
+    assert not drawn.textures
     gate.set()
 
 
@@ -550,3 +578,102 @@ def test_the_count_of_warnings_is_that_of_the_scene_as_it_is(view, caplog):
         bpy.context.object.update_tag()  # read once more: nothing is said twice
         view.settle()
         assert len(caplog.records) == count
+
+
+# Large scenes
+
+
+@pytest.fixture
+def crowd(view):
+    """Very many small spheres beside the one of the view; their number."""
+    count = QUICK_FROM + 1000
+    centers = np.random.default_rng(0).uniform(-3.0, 3.0, (count, 3)).astype(np.float32)
+    cloud = new_point_cloud("Crowd", centers, np.full(count, 0.02, np.float32), None)
+    bpy.context.scene.collection.objects.link(cloud)
+    return count
+
+
+def test_good_trees_follow_quick_ones_and_the_picture_goes_on(view, crowd):
+    view.settle()
+    first, better = loads()
+    assert first.change & Change.GEOMETRY and better.change == Change.TREES
+    assert sum(draw.began for draw in draws()) == 1 and draws()[-1].sample == 2
+    assert not view.session.scene.loaded.can_improve and not view.redraw()
+
+
+def test_an_edit_goes_before_good_trees(view, crowd, monkeypatch):
+    gate, prepare_better = threading.Event(), LoadedScene.prepare_better
+
+    def wait(loaded):
+        assert gate.wait(60.0)
+        return prepare_better(loaded)
+
+    monkeypatch.setattr(LoadedScene, "prepare_better", wait)
+    while view.redraw() or not draws()[-1].finished:
+        pass
+    assert view.session.waiting and "Loading" not in view.engine.text
+    bpy.context.object.location.x = 1.0
+    while len(loads()) < 2 or view.redraw():
+        view.redraw()
+    assert loads()[-1].change & Change.FILM and "Loading" not in view.engine.text
+    gate.set()
+    view.settle()
+    assert loads()[-1].change == Change.TREES and not view.session.scene.loaded.can_improve
+
+
+def test_good_trees_that_cannot_be_built_are_reported_and_not_tried_again(view, crowd, monkeypatch):
+    def fail(_loaded):
+        raise SceneError("no memory")
+
+    monkeypatch.setattr(LoadedScene, "prepare_better", fail)
+    view.settle()
+    assert "no memory" in view.session.error and draws()[-1].finished and not view.redraw()
+
+
+# How long redraws take
+
+
+def test_redraws_take_longer_where_nothing_happens_and_blender_takes_its_time(monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr(time, "perf_counter", lambda: now[0])
+    pace, taken = RedrawPace(), []
+    for pause in (0.1,) * 12:
+        pace.begin()
+        taken.append(pace.seconds(0.02))
+        now[0] += taken[-1]
+        pace.end(asked=True)
+        now[0] += pause
+    assert taken[0] == 0.02 and taken == sorted(taken) and taken[-1] == MOST
+    pace.changed()
+    assert pace.seconds(0.02) == 0.02
+    now[0] += 100.0
+    for pause in (0.001,) * 3:
+        pace.begin()
+        pace.end(asked=True)
+        now[0] += pause
+    pace.begin()
+    assert pace.seconds(0.02) == 0.02, "fewer redraws would spare nothing"
+    pace.end(asked=False)
+    now[0] += 5.0
+    pace.begin()
+    assert pace.overhead < 0.01, "nobody asked for this one: it was no pause"
+
+
+def test_strands_are_cut_finer_where_the_view_comes_near(view):
+    def pieces():
+        return view.session.scene.loaded.drawn.packed.statistics["primitives"]["cylinder"]
+
+    bpy.ops.curve.primitive_bezier_circle_add(radius=2.0)
+    bpy.context.object.conic.strand_radius = 0.01
+    view.settle()
+    few, count = pieces(), len(loads())
+    view.look_from(0.0, width=4.0)
+    view.settle()
+    assert len(loads()) == count, "they are fine enough"
+    view.look_from(0.0, width=0.3)
+    view.settle()
+    assert len(loads()) == count + 1 and pieces() > 2 * few
+    view.look_from(0.0)
+    view.settle()
+    assert len(loads()) == count + 1, "finer ones do no harm"
+    assert not view.redraw()

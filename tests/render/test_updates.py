@@ -27,9 +27,11 @@ from addon.engine import (
     Triangles,
     World,
     layout,
+    packing,
+    tree_packing,
 )
 from addon.engine.expression import Parameter, call, component
-from addon.engine.film_options import DepthCue
+from addon.engine.film_options import DepthCue, Outlines
 from addon.engine.material import surface_attribute, surface_image
 
 SIZE = (40, 30)
@@ -48,9 +50,9 @@ def picture(device, loaded=None, scene=None, settings=None, size=SIZE):
     return pixels
 
 
-def update(loaded, scene, settings, seconds=None):
+def update(loaded, scene, settings, seconds=None, quick=False):
     """Bring a scene to the device, in slices where `seconds` are given; the `Update`."""
-    made = loaded.prepare(scene, settings)
+    made = loaded.prepare(scene, settings, quick)
     while not loaded.apply(made, seconds):
         pass
     return made
@@ -232,11 +234,17 @@ class Stage:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_after_any_edits_the_picture_is_that_of_a_fresh_session(device, seed):
+@pytest.mark.parametrize("quick", [False, True])
+def test_after_any_edits_the_picture_is_that_of_a_fresh_session(device, monkeypatch, seed, quick):
+    for module in (packing, tree_packing):
+        monkeypatch.setattr(module, "QUICK_FROM", 10)
     stage, loaded, log = Stage(seed), LoadedScene(device), []
     for step in range(12):
         log.append("+".join(stage.edit() for _ in range(stage.rng.integers(1, 4))) if step else "")
-        made = update(loaded, stage.scene(), stage.settings, seconds=0.0 if seed % 2 else None)
+        made = update(loaded, stage.scene(), stage.settings, seconds=0.0 if seed % 2 else None, quick=quick)
+        if step % 3 == 2 and loaded.can_improve:
+            log.append("better trees")
+            loaded.apply(loaded.prepare_better())
         expected = picture(device, None, stage.scene(), stage.settings)
         found = picture(device, loaded)
         different = np.abs(found - expected).max(axis=-1) > 1e-5
@@ -458,3 +466,49 @@ def test_sessions_of_one_scene_begin_anew_when_it_changes(loaded, before):
         assert np.array_equal(session.pixels(), picture(loaded.device, None, scene, Settings(), size))
         session.free()
     assert loaded.drawn is not None, "it is not theirs"
+
+
+# Quick trees, and good ones after them
+
+
+def test_good_trees_take_the_place_of_quick_ones_and_the_picture_goes_on(device, loaded):
+    scene = simple_scene(instances=[placed(large(seed=1), (0, 0, 2), (3, 0, 1))])
+    settings = Settings(samples=4)
+    assert loaded.apply(loaded.prepare(scene, settings, quick=True)) and loaded.can_improve
+    session = Session(device, loaded)
+    session.start(40, 30)
+    session.film.samples = 2
+    while session.step(1.0):
+        pass
+    version, source = loaded.version, loaded.drawn.source
+    made = loaded.prepare_better()
+    assert made.change == Change.TREES and made.improves
+    assert loaded.apply(made) and not loaded.can_improve
+    assert loaded.version == version and loaded.drawn.source == source
+    session.film.samples = 4
+    while session.step(1.0):
+        pass
+    expected = picture(device, None, scene, settings, size=(40, 30))
+    assert np.abs(session.pixels() - expected).max() < 1e-5
+    session.free()
+
+
+def test_lines_begin_anew_with_good_trees(loaded):
+    loaded.apply(loaded.prepare(simple_scene(), Settings(outlines=Outlines()), quick=True))
+    assert loaded.prepare_better().change == Change.TREES | Change.FILM
+
+
+def test_a_scene_of_good_trees_cannot_improve(loaded, before):
+    assert not loaded.can_improve
+    loaded.apply(loaded.prepare(replace(before, shapes=ball()), Settings(), quick=True))
+    assert not loaded.can_improve, "few shapes have a good tree at once"
+
+
+def test_an_edit_makes_the_better_trees_of_the_scene_before_useless(loaded):
+    scene = simple_scene()
+    loaded.apply(loaded.prepare(scene, Settings(), quick=True))
+    better = loaded.prepare_better()
+    loaded.apply(loaded.prepare(replace(scene, materials=[Material(diffuse=0.1)] * 2), Settings(), quick=True))
+    with pytest.raises(RuntimeError, match="before another one was applied"):
+        loaded.apply(better)
+    assert loaded.can_improve and loaded.prepare_better().improves

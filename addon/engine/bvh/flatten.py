@@ -115,12 +115,12 @@ def runs(primitives: np.ndarray, label: np.ndarray) -> tuple[np.ndarray, np.ndar
     """`order` and `run` of the `Bvh`; and per depth-first place the place in its label's run, (n,)."""
     run = np.concatenate([[0], np.cumsum(np.bincount(label))]).astype(np.int64)
     if len(run) == 2:
-        return primitives, run, np.arange(len(primitives))
+        return primitives, run, np.arange(len(primitives), dtype=np.int32)
     labels = label[primitives]
     places = np.argsort(labels.astype(np.uint16), kind="stable")
-    rank = np.empty(len(places), np.int64)
-    rank[places] = np.arange(len(places))
-    return primitives[places], run, rank - run[labels]
+    rank = np.empty(len(places), np.int32)
+    rank[places] = np.arange(len(places)) - np.repeat(run[:-1], np.diff(run))
+    return primitives[places], run, rank
 
 
 def _leaf_nodes(topology: Topology, leaves: np.ndarray, start: np.ndarray) -> np.ndarray:

@@ -6,9 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..threads import LARGE, each
 from .boxes import checked_boxes
-from .form import Form
+from .form import Slots
 from .tree import Bvh
 
 
@@ -30,13 +29,10 @@ def refit(bvh: Bvh, lo: np.ndarray, hi: np.ndarray) -> Bvh:
 
 def put_around(bvh: Bvh, lo: np.ndarray, hi: np.ndarray, roots: np.ndarray | None = None) -> Bvh:
     """A hierarchy without boxes, or all of those with `roots`, around the (n, 3) float32 boxes."""
-    span = np.empty((6, len(lo)), np.float32)
 
-    def fill(row):
-        corner = (lo if row < 3 else hi)[:, row % 3]
-        np.take(np.ascontiguousarray(corner), bvh.order, out=span[row], mode="clip")
-        if row < 3:
-            np.negative(span[row], out=span[row])
+    def span(row):  # one at a time: all take much memory
+        corner = np.ascontiguousarray((lo if row < 3 else hi)[:, row % 3])
+        corner = np.take(corner, bvh.order, mode="clip")
+        return np.negative(corner, out=corner) if row < 3 else corner
 
-    each(fill, range(6), worth_it=len(lo) >= LARGE)
-    return replace(bvh, boxes=Form(bvh, roots).around(span).boxes)
+    return replace(bvh, boxes=Slots(bvh, roots).boxes(span))
