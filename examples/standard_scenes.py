@@ -159,7 +159,9 @@ def lattice(n=12):
     """A cube of (n + 1)^3 small mirroring spheres on a grid, with 3 n (n + 1)^2 struts between them."""
     h = 1.0 / n
     lights = [(2, 0.5, 0.5), (-1, 0.5, 0.5), (0.5, 2, 0.5), (0.5, -1, 0.5), (0.5, 0.5, 2), (0.5, 0.5, -1)]
-    scene = standard_scene((0.5 + h / 2, 1, 1 - h / 2), (0.5 + h / 2, -1, -1 - h / 2), (0.2, 1, 0), 0.0, lights, angle=60.0)
+    scene = standard_scene(
+        (0.5 + h / 2, 1, 1 - h / 2), (0.5 + h / 2, -1, -1 - h / 2), (0.2, 1, 0), 0.0, lights, angle=60.0
+    )
     grid = np.stack(np.meshgrid(*[np.arange(n + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     joint = scene.add_material(nff_material((0.9, 0.9, 0.9), 0.5, 0.5, 3.0827))
     scene.add_spheres(grid * h, 0.25 * h, joint)

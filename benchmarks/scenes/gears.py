@@ -1,4 +1,4 @@
-"""Gears: a cube of meshing toothed wheels that let light through without bending it."""
+"""Gears: a cube of meshing toothed wheels of clear glass of little refraction."""
 
 import numpy as np
 
@@ -20,7 +20,7 @@ def gears(size=4):
     faces = _turned(1.5 * pitch * _gear(), turn) + center[:, None, None]
     for shade in range(4):
         color = np.array([(0.9, 0.9, 0.9), (0.9, 0.6, 0.6), (0.6, 0.9, 0.6), (0.6, 0.6, 0.9)][shade])
-        glass = nff_material(color, 0.0, 0.1, 20.0, 0.8)
+        glass = nff_material(color, 0.0, 0.1, 20.0, 0.8, 1.1)
         chosen = faces[place.sum(axis=1) % 4 == shade].reshape(-1, 3, 3)
         if len(chosen):
             scene.add_triangles(*np.moveaxis(chosen, 1, 0), scene.add_material(glass))

@@ -26,7 +26,9 @@ def mirror_room(size=5):
 
 def _room(walls):
     """A cube of side 2 seen from within; a wall material for each axis."""
-    scene = standard_scene((-0.2, -0.95, 0.15), (0, 0.5, 0), (0, 0, 1), 0.0, [(0.1, -0.85, 0.85), (-0.8, 0.1, 0.9)], 75.0)
+    scene = standard_scene(
+        (-0.2, -0.95, 0.15), (0, 0.5, 0), (0, 0, 1), 0.0, [(0.1, -0.85, 0.85), (-0.8, 0.1, 0.9)], 75.0
+    )
     corners = _CORNERS[np.array(_WALLS)]
     for axis, wall in enumerate(walls):
         a, b, c, d = np.moveaxis(corners[2 * axis : 2 * axis + 2], 1, 0)
