@@ -1,4 +1,4 @@
-"""Conic beside POV-Ray and Tachyon: the same scenes, the same pixels, one ray through each, the same depth, in turns."""
+"""Conic beside POV-Ray and Tachyon: the same scenes, same pixels, a ray through each, same depth, in turn."""
 
 import contextlib
 import tempfile
@@ -7,24 +7,23 @@ import numpy as np
 
 from . import results, scenes
 from .measuring import geometric_mean, in_turn
-from .peers import WHITTED, Conic
+from .peers import WHITTED
 from .tables import Table, digits
 
 DEPTH = 5
 SCENES = (*scenes.FAMILIES, "balls:6")
-QUICK = ("balls", "tree", "mount", "lattice", "mirror_room")
 NOTES = (
-    "Seconds are those of tracing as each program reports them: reading, building and compiling apart. Conic traces each "
-    "scene once before it is measured, since Mesa compiles at the first draw.",
+    "Seconds are those of tracing as each program reports them: reading, building and compiling apart. Conic traces "
+    "each scene once before it is measured, since Mesa compiles at the first draw.",
     "Conic traces in float32, on the GPU or, with Mesa's driver, on the processor's cores.",
-    "Equal: eye rays through the middle of each pixel, depth 5 with the eye ray as 1, no cut-off by weight, no shadow rays "
-    "towards lights behind a surface. 'differ': the share of pixels that are not Conic's within 2%.",
+    "Equal: eye rays through the middle of each pixel, depth 5 with the eye ray as 1, no cut-off by weight, no shadow "
+    "rays towards lights behind a surface. 'differ': the share of pixels that are not Conic's within 2%.",
 )
 
 
 def add_arguments(parser):
     parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--size", type=int, default=512)
+    parser.add_argument("--size", type=int, default=384)
     parser.add_argument("--scenes", nargs="+", default=list(SCENES), help="FAMILY or FAMILY:SIZE")
 
 
@@ -86,8 +85,8 @@ def table(values):
     others = programs[1:]
     head = ["scene", "primitives", "rays, millions", *(f"{p}, s" for p in programs)]
     head += [f"{p} / Conic" for p in others] + [f"{p} differ" for p in others]
-    title = f"Tracing, {values['size']} x {values['size']} pixels, depth {values['depth']}: median seconds (least to greatest)"
-    made = Table(title, head)
+    size = values["size"]
+    made = Table(f"Tracing, {size} x {size}, depth {values['depth']}: median seconds (least to greatest)", head)
     for name, row in values["scenes"].items():
         rays = sum(row["rays"][kind] for kind in ("eye", "reflect", "refract", "shadow"))
         cells = [name, sum(row["primitives"].values()), f"{rays / 1e6:.2f}"]
@@ -96,14 +95,9 @@ def table(values):
         cells += [f"{100 * row['differ'][p]:.1f}%" if p in row["differ"] else "-" for p in others]
         made.add(*cells)
     means = {p: [row["ratio"][p] for row in values["scenes"].values() if p in row["ratio"]] for p in others}
-    cells = [digits(geometric_mean(ratios)) if ratios else "-" for ratios in means.values()]
-    made.add("geometric mean", *[""] * (2 + len(programs)), *cells, *[""] * len(others))
-    made.add(
-        "least",
-        *[""] * (2 + len(programs)),
-        *(digits(min(r)) if r else "-" for r in means.values()),
-        *[""] * len(others),
-    )
+    for what, function in (("geometric mean", geometric_mean), ("least", min)):
+        cells = [digits(function(ratios)) if ratios else "-" for ratios in means.values()]
+        made.add(what, *[""] * (2 + len(programs)), *cells, *[""] * len(others))
     made.notes += [*NOTES, *(sentence for peer in WHITTED for sentence in peer.unequal)]
     made.notes += [f"{p}: {version}" for p, version in values["versions"].items()]
     left_out = {}

@@ -46,8 +46,6 @@ class PovRay(Peer):
 
     def rays(self):
         """Rays in all but shadow rays, and tests of shadow rays, as POV-Ray counts them."""
-        shadow = re.search(r"Shadow Ray Tests:\s+(\d+)", self._printed)
-        return {
-            "path": int(number_in(self._printed, r"Rays:\s+(\d+)")),
-            "shadow": int(shadow.group(1)) if shadow else 0,
-        }
+        path = number_in(self._printed, r"\nRays:\s+(\d+)")
+        shadow = re.search(r"Shadow Ray Tests:\s+(\d+)", self._printed)  # no such line where there are none
+        return {"path": int(path), "shadow": int(shadow.group(1)) if shadow else 0}

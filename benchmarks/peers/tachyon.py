@@ -1,6 +1,7 @@
 """Tachyon on the scene in its own language."""
 
 import shutil
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -24,8 +25,7 @@ class Tachyon(Peer):
 
     @classmethod
     def version(cls):
-        text = run_program(["tachyon", "-version"], "/")
-        return text.partition("Version")[2].split()[0] if "Version" in text else ""
+        return subprocess.run(["tachyon", "-version"], capture_output=True, text=True).stdout.strip()  # ends with 255
 
     def __init__(self, scene, size, depth, folder):
         source = Path(folder, "scene.dat")
@@ -88,9 +88,10 @@ def _light(light):
 
 def _texture(index, material):
     """Color times DIFFUSE is the matte share, SPECULAR the mirror's."""
+    phong = f"PHONG PLASTIC {material.highlight[0]!r} PHONG_SIZE {material.shine!r}"
     return (
         f"TEXDEF M{index} AMBIENT 0 DIFFUSE 1 SPECULAR {material.reflect[0]!r} OPACITY 1 "
-        f"PHONG PLASTIC {material.highlight[0]!r} PHONG_SIZE {material.shine!r} COLOR {_join(material.diffuse)} TEXFUNC 0"
+        f"{phong} COLOR {_join(material.diffuse)} TEXFUNC 0"
     )
 
 

@@ -38,7 +38,7 @@ def make(name):
 
 
 def comparable(scene):
-    """The scene without what some peer lacks: a near plane, triangles with one side, clear bodies that are matte too."""
+    """The scene without what some peer lacks: a near plane, triangles with one side, bodies both clear and matte."""
     shapes = Geometry(name=scene.shapes.name)
     for _, part in scene.shapes.kinds():
         if isinstance(part, Triangles):

@@ -38,7 +38,7 @@ def _knot():
     first = np.stack([np.cos(angle), np.sin(angle), np.zeros(5)], axis=-1)
     tilt, around = np.arctan(2.0), np.radians(72.0 * np.arange(5))
     axes = np.stack([np.sin(tilt) * np.cos(around), np.sin(tilt) * np.sin(around), np.full(5, np.cos(tilt))], axis=-1)
-    middle = axes + (0.0, 0.0, 1.0)
+    middle = axes + np.array([0.0, 0.0, 1.0])
     middle /= np.linalg.norm(middle, axis=-1, keepdims=True)
     turns = 2.0 * middle[:, :, None] * middle[:, None] - np.eye(3)  # by half a circle, which takes +Z to the axis
     return np.concatenate([first[None], np.einsum("nij,kj->nki", turns, first)])

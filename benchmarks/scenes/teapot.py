@@ -9,7 +9,10 @@ PATCHES = 36
 SQUARES = 8
 
 # Control points (radius, height) of the body and of the lid, cubics in a row.
-_BODY = [(0.0, 0.0), (0.6, 0.0), (1.1, 0.02), (1.3, 0.3), (1.55, 0.65), (1.6, 1.1), (1.25, 1.5), (1.1, 1.67), (0.95, 1.75), (0.95, 1.9)]  # fmt: skip
+_BODY = [
+    (0.0, 0.0), (0.6, 0.0), (1.1, 0.02), (1.3, 0.3), (1.55, 0.65),
+    (1.6, 1.1), (1.25, 1.5), (1.1, 1.67), (0.95, 1.75), (0.95, 1.9),
+]  # fmt: skip
 _LID = [(0.98, 1.9), (0.7, 2.1), (0.22, 2.05), (0.16, 2.2), (0.1, 2.35), (0.32, 2.5), (0.0, 2.55)]
 # Control points (x, z) of the middles of spout and handle, and the radius at each.
 _SPOUT = [(1.1, 0.55), (1.9, 0.5), (1.7, 1.2), (2.1, 1.6), (2.25, 1.75), (2.35, 1.8), (2.5, 1.82)]
@@ -19,7 +22,7 @@ _HANDLE_RADIUS = [0.11] * 7
 
 
 def teapot(size=12):
-    """36 patches of 2 n^2 triangles over a floor of 128 triangles: 10,496 by default, less what is none at the poles."""
+    """36 patches of 2 n^2 triangles over a floor of 128 triangles: 10,496 by default less those at poles."""
     scene = standard_scene((3.2, -5.6, 3.8), (0.1, 0, 0.95), (0, 0, 1), 0.0, [(-3.1, -9.8, 12.1), (11.3, -5.1, 8.8)])
     _add_checkers(scene)
     china = scene.add_material(nff_material((0.9, 0.75, 0.6), 0.75, 0.25, 40.0))
