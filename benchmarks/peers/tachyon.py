@@ -39,7 +39,7 @@ class Tachyon(Peer):
 
     def picture(self):
         data = self._target.read_bytes()[-(self._size**2) * 6 :]
-        return np.frombuffer(data, ">u2").reshape(self._size, self._size, 3)[::-1] / 65535.0
+        return np.frombuffer(data, ">u2").reshape(self._size, self._size, 3)[::-1, ::-1] / 65535.0
 
 
 def scene_text(scene, size, depth):
@@ -48,7 +48,7 @@ def scene_text(scene, size, depth):
         raise SceneError("planes, instances and lights with fall-off are not written for Tachyon")
     if any(any(material.transmit) for material in scene.materials):
         raise SceneError("Tachyon does not bend light")
-    parts = ["BEGIN_SCENE", f"RESOLUTION {size} {size}", _camera(scene.camera, depth)]
+    parts = ["BEGIN_SCENE", f"RESOLUTION {size} {size}", _camera(scene.camera, size, depth)]
     parts += [f"BACKGROUND {_join(scene.world.color)}", *map(_light, scene.lights)]
     parts += [_texture(i, material) for i, material in enumerate(scene.materials)]
     for _, part in scene.shapes.kinds():
@@ -62,9 +62,11 @@ def _join(values):
     return " ".join(repr(float(x)) for x in values)
 
 
-def _camera(camera, depth):
-    """Its ZOOM is the focal length of a picture of height 1."""
-    _, up, back, eye = camera.matrix[:3].T
+def _camera(camera, size, depth):
+    """Its ZOOM is the focal length of a picture of height 1. It is left-handed: the picture is seen in a mirror.
+    Its rays go through corners of pixels: the view is turned by half a pixel."""
+    right, up, back, eye = camera.matrix[:3].T
+    half_pixel = camera.window[3] / size
     lines = [
         "CAMERA",
         "PROJECTION PERSPECTIVE",
@@ -73,7 +75,7 @@ def _camera(camera, depth):
         "ANTIALIASING 0",
         f"RAYDEPTH {depth}",
         f"CENTER {_join(eye)}",
-        f"VIEWDIR {_join(-back)}",
+        f"VIEWDIR {_join(half_pixel * (right - up) - back)}",
         f"UPDIR {_join(up)}",
         "END_CAMERA",
     ]
@@ -112,7 +114,7 @@ def _triangles(part):
         _lines(f"TRI {points} M%d", flat.material, flat.p0, flat.p1, flat.p2),
         _lines(
             f"STRI {points} {normals} M%d", round_.material,
-            round_.p0, round_.p1, round_.p2, round_.n0, round_.n1, round_.n2,
+            round_.p0, round_.p2, round_.p1, round_.n0, round_.n2, round_.n1,
         ),
     ]  # fmt: skip
     return "\n".join(filter(None, texts))

@@ -27,7 +27,7 @@ def shells(size=3):
 
 
 def _shell():
-    """Centers (SPHERES, 3) and radii of a helix on a cone about Z, on the plane z = 0; its outermost turn has radius 0.7."""
+    """Centers (SPHERES, 3) and radii of a helix on a cone about Z, over z = 0; its outermost turn has radius 0.7."""
     turn = np.linspace(0.0, TURNS, SPHERES)
     scale = GROWTH ** (turn - TURNS)
     angle = 2.0 * np.pi * turn
