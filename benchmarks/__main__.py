@@ -8,6 +8,7 @@ import importlib
 
 RESULTS = {
     "peers": ("whitted", "Conic beside POV-Ray and Tachyon over all families of scenes"),
+    "traversal": ("traversal", "eye and shadow rays beside Mitsuba 3 and Embree"),
 }
 
 
