@@ -9,6 +9,9 @@ import importlib
 RESULTS = {
     "peers": ("whitted", "Conic beside POV-Ray and Tachyon over all families of scenes"),
     "traversal": ("traversal", "eye and shadow rays beside Mitsuba 3 and Embree"),
+    "growth": ("growth", "seconds and bytes against the number of primitives"),
+    "rays": ("rays", "rays a second by kind, seconds by stage"),
+    "compile": ("compiling", "compiling the programs, cold and warm"),
 }
 
 
