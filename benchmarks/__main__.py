@@ -12,6 +12,11 @@ RESULTS = {
     "growth": ("growth", "seconds and bytes against the number of primitives"),
     "rays": ("rays", "rays a second by kind, seconds by stage"),
     "compile": ("compiling", "compiling the programs, cold and warm"),
+    "tests-a-ray": ("tests_a_ray", "nodes and primitives that a ray tests, beside the SAH cost"),
+    "plots": ("plots", "pictures of the results that are there"),
+    "all": ("everything", "all of these in a row, under 15 minutes"),
+    "cycles": ("cycles", "until a picture has no noise, beside Cycles, in Blender"),
+    "first-picture": ("first_picture", "first picture of the default scene of Blender, cold and warm"),
 }
 
 

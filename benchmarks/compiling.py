@@ -1,4 +1,4 @@
-"""Seconds to compile Conic's programs, with the driver's cache empty (cold) and filled (warm), and its first picture."""
+"""Seconds to compile Conic's programs, with the driver's cache empty (cold) and filled (warm)."""
 
 import json
 import os
@@ -37,7 +37,8 @@ def _cold_and_warm(name, runs):
             for state in seconds:
                 seconds[state].append(_in_process(name, cache))
     return {
-        state: {stage: Spread.of([s[stage] for s in taken]).json() for stage in _STAGES} for state, taken in seconds.items()
+        state: {stage: Spread.of([s[stage] for s in taken]).json() for stage in _STAGES}
+        for state, taken in seconds.items()
     }
 
 
@@ -65,7 +66,9 @@ def table(values):
     made = Table("Seconds of compiling", head)
     for name, row in values["scenes"].items():
         made.add(name, *(_spread(row[state][stage]) for state in ("cold", "warm") for stage in _STAGES))
-    made.notes.append("compile: of the driver's compiler. first draw: what the first draw takes longer than the second.")
+    made.notes.append(
+        "compile: of the driver's compiler. first draw: what the first draw takes longer than the second."
+    )
     made.notes.append("cold: the cache of Mesa's driver is empty; other drivers have caches that this does not empty.")
     return made
 

@@ -68,7 +68,16 @@ def _sphereflake(families):
 
 def table(values):
     size = values["size"]
-    head = ("scene", "primitives", "trace, s (spread)", "Mrays/s", "exponent", "build, s", "upload, s", "bytes a primitive")
+    head = (
+        "scene",
+        "primitives",
+        "trace, s (spread)",
+        "Mrays/s",
+        "exponent",
+        "build, s",
+        "upload, s",
+        "bytes a primitive",
+    )
     made = Table(f"Growth of tracing, {size} x {size}, depth {DEPTH}", head)
     for family in values["families"].values():
         for row in family["rows"]:
@@ -84,8 +93,7 @@ def table(values):
             )
     made.notes.append("exponent: of the power of the number of primitives that fits the seconds of its family best.")
     if values["sphereflake"]:
-        made.notes.append(
-            f"A sphereflake of 597,871 spheres, 81 times more than 7,381, takes {digits(values['sphereflake'])} times as long."
-        )
+        times = digits(values["sphereflake"])
+        made.notes.append(f"A sphereflake of 597,871 spheres, 81 times more than 7,381, takes {times} times as long.")
     made.notes.append(values["device"])
     return made

@@ -92,5 +92,5 @@ def stages_table(values):
         seconds = row["seconds"]
         cells = [row["build"].get(stage, 0.0) for stage in stages]
         made.add(name, *(f"{s:.3f}" for s in (*cells, seconds["upload"], seconds["compile"], seconds["first_picture"])))
-    made.notes.append("The first columns are the parts of building. Mesa compiles most at the first draw, within the first picture.")
+    made.notes.append("The first columns are the parts of building.")
     return made

@@ -1,7 +1,10 @@
 """Conic beside Mitsuba 3 and Embree on eye and shadow rays: how fast trees are traversed, all else apart."""
 
 import contextlib
+import dataclasses
 import os
+
+from addon.engine import Material
 
 from . import results, scenes
 from .measuring import geometric_mean, in_turn
@@ -10,9 +13,10 @@ from .tables import Table, digits
 
 SCENES = ("balls", "balls:6", "shells", "box:1e5", "mount", "tetra", "teapot", "gears")
 NOTES = (
-    "Each traces the same eye rays and, from what they hit, a shadow ray to each light in front of the surface. Depth 1: "
-    "mirrors do not send rays on. A ratio above 1 means that Conic is faster.",
-    "Rays are counted by each program; smooth normals of the teapot are flat in the others, which moves a few.",
+    "Each traces the same eye rays and, from what they hit, a shadow ray to each light in front of it. All is "
+    "matte. A ratio above 1 means that Conic is faster.",
+    "Rays are counted by each program; smooth normals of the teapot are flat in the others, which moves a few. Mitsuba's "
+    "ellipsoids lose digits far from the eye: of 1e5 spheres 12% more eye rays hit.",
 )
 
 
@@ -32,7 +36,7 @@ def run(arguments):
 
 def measure(name, size, runs, absent):
     """Seconds, ratios to Conic's and counted rays by program, of one scene."""
-    scene, reasons = scenes.make(name), dict(absent)
+    scene, reasons = matte(scenes.make(name)), dict(absent)
     with contextlib.ExitStack() as stack:
         peers = {"Conic": Conic(scene, size, 1, shadows="OPAQUE")}
         for peer in TRAVERSAL:
@@ -60,6 +64,12 @@ def measure(name, size, runs, absent):
     }
 
 
+def matte(scene):
+    """The scene with diffuse surfaces alone: shadow rays leave from each."""
+    materials = [Material(m.diffuse if any(m.diffuse) else m.transmit, fresnel=False) for m in scene.materials]
+    return dataclasses.replace(scene, materials=materials)
+
+
 def table(values):
     programs, others = ["Conic", *(peer.name for peer in TRAVERSAL)], [peer.name for peer in TRAVERSAL]
     head = ["scene", "primitives", "rays, millions", *(f"{p}, Mrays/s" for p in programs)]
@@ -72,7 +82,7 @@ def table(values):
         cells = [name, sum(row["primitives"].values()), f"{rays['Conic']:.2f}"]
         for p in programs:
             s = row["seconds"].get(p)
-            cells.append(f"{rays[p] / s['median']:.1f} ({rays[p] / s['greatest']:.1f} to {rays[p] / s['least']:.1f})" if s else "-")
+            cells.append(_rates(rays[p], s) if s else "-")
         made.add(*cells, *(digits(row["ratio"][p]) if p in row["ratio"] else "-" for p in others))
     means = [[row["ratio"][p] for row in values["scenes"].values() if p in row["ratio"]] for p in others]
     made.add("geometric mean", *[""] * (2 + len(programs)), *(digits(geometric_mean(m)) if m else "-" for m in means))
@@ -84,3 +94,9 @@ def table(values):
             left_out.setdefault((program, reason), []).append(name)
     made.notes += [f"{p} is not there ({reason}): {', '.join(names)}." for (p, reason), names in left_out.items()]
     return made
+
+
+def _rates(rays, seconds):
+    """Median, least and greatest rate of so many rays."""
+    median, least, greatest = (rays / seconds[name] for name in ("median", "greatest", "least"))
+    return f"{median:.1f} ({least:.1f} to {greatest:.1f})"

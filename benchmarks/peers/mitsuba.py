@@ -18,8 +18,8 @@ _LLVM = "/usr/lib/*/libLLVM-*.so*"
 class Mitsuba(Peer):
     name = "Mitsuba 3"
     unequal = (
-        "Mitsuba traces triangles and its ellipsoids shape (all spheres in one) in float32 with Embree's trees, on as many "
-        "threads as there are cores; it is asked for hits, normals and shadow tests alone, Conic shades as well.",
+        "Mitsuba traces triangles and its ellipsoids shape (all spheres in one) in float32 with Embree's trees, on as "
+        "many threads as there are cores; it is asked for hits, normals and shadow tests alone, Conic shades as well.",
     )
 
     @classmethod
@@ -61,7 +61,7 @@ class Mitsuba(Peer):
         return seconds
 
     def _kernel(self):
-        """Of each eye ray: whether it hits, how many lights are in front of the surface, how many of them shine on it."""
+        """Of each eye ray: whether it hits, how many lights are in front of the surface and how many shine on it."""
         import drjit as dr
 
         mi = self._mi

@@ -114,7 +114,7 @@ def _triangles(part):
         _lines(f"TRI {points} M%d", flat.material, flat.p0, flat.p1, flat.p2),
         _lines(
             f"STRI {points} {normals} M%d", round_.material,
-            round_.p0, round_.p2, round_.p1, round_.n0, round_.n2, round_.n1,
+            round_.p0, round_.p1, round_.p2, round_.n0, round_.n1, round_.n2,
         ),
     ]  # fmt: skip
     return "\n".join(filter(None, texts))

@@ -15,8 +15,8 @@ def rings(size=7):
     for color, part in (((0.9, 0.75, 0.5), slice(0, 3)), ((0.5, 0.75, 0.9), slice(3, 6))):
         metal = scene.add_material(nff_material(color, 0.6, 0.4, 10.0))
         base, apex = corners[:, part], np.roll(corners[:, part], 1, axis=2)
-        scene.add_spheres(base.reshape(-1, 3), 0.1 * scale, metal)
-        scene.add_cylinders(base.reshape(-1, 3), apex.reshape(-1, 3), 0.08 * scale, metal, caps=False)
+        scene.add_spheres(base.reshape(-1, 3), 0.08 * scale, metal)
+        scene.add_cylinders(base.reshape(-1, 3), apex.reshape(-1, 3), 0.065 * scale, metal, caps=False)
     return scene
 
 

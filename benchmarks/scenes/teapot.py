@@ -30,7 +30,7 @@ def teapot(size=12):
     corners = _cells(points), _cells(normals)
     real = np.linalg.norm(np.cross(*(corners[0][:, i] - corners[0][:, 0] for i in (1, 2))), axis=-1) > 1e-12
     p, n = (np.moveaxis(corner[real], 1, 0) for corner in corners)
-    scene.add_triangles(*p, china, n0=n[0], n1=n[1], n2=n[2])
+    scene.add_triangles(p[0], p[2], p[1], china, n0=n[0], n1=n[2], n2=n[1])  # their front is outside
     return scene
 
 
