@@ -1,8 +1,8 @@
 """Conic beside Cycles, both in Blender: how long each takes to a picture of direct light and mirrors without noise.
 
-The scene is imported from NFF. Conic's one sample of points of light and mirrors has no noise. Cycles' noise is
-the root mean square of its picture less its own of very many samples, values clipped to 0..1, measured at 1, 4, 16 ... samples;
-the seconds until it is as small as `error` are interpolated, or extrapolated, along error ~ samples^-1/2.
+The scene is imported from NFF. Conic's one sample of points of light and mirrors has no noise. Cycles' noise is the
+root mean square of its picture less its own of very many samples, values clipped to 0..1, measured at 1, 4, 16 ...
+samples; the seconds until it is as small as `error` are interpolated or extrapolated along error ~ samples^-1/2.
 Seconds are those of the whole render operator, in turn, each program having rendered once before. It needs bpy.
 """
 

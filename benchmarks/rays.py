@@ -69,7 +69,7 @@ def table(values):
     for name, row in values["scenes"].items():
         made.add(name, *(_rate(row["kinds"].get(kind)) for kind in STEPS))
     made.notes += [
-        "eye: the scene without lights at depth 1. shadow: the lights' share of the seconds at depth 1. reflect, refract: "
+        "eye: without lights at depth 1. shadow: the lights' share of the seconds at depth 1. reflect, refract: "
         f"at depth {DEPTH} without lights, mirrors alone and clear bodies without mirrors, less the eye rays' seconds.",
         "Shading belongs to the rays that reach a surface.",
         values["device"],

@@ -13,9 +13,9 @@ from .tables import Table, digits
 
 SCENES = ("balls", "balls:6", "shells", "box:1e5", "mount", "tetra", "teapot", "gears")
 NOTES = (
-    "Each traces the same eye rays and, from what they hit, a shadow ray to each light in front of it. All is "
+    "Each traces the same eye rays and, from what they hit, a shadow ray to each light in front. All is "
     "matte. A ratio above 1 means that Conic is faster.",
-    "Rays are counted by each program; smooth normals of the teapot are flat in the others, which moves a few. Mitsuba's "
+    "Rays are counted by each program; smooth normals of the teapot are flat in the others. Mitsuba's "
     "ellipsoids lose digits far from the eye: of 1e5 spheres 12% more eye rays hit.",
 )
 
