@@ -14,7 +14,7 @@ RESULTS = {
     "compile": ("compiling", "compiling the programs, cold and warm"),
     "tests-a-ray": ("tests_a_ray", "nodes and primitives that a ray tests, beside the SAH cost"),
     "plots": ("plots", "pictures of the results that are there"),
-    "all": ("everything", "all of these in a row, under 15 minutes"),
+    "all": ("everything", "all of these in a row"),
     "cycles": ("cycles", "until a picture has no noise, beside Cycles, in Blender"),
     "first-picture": ("first_picture", "first picture of the default scene of Blender, cold and warm"),
 }

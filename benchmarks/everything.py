@@ -4,7 +4,7 @@ import subprocess
 import sys
 import time
 
-# Each in a process of its own, with options that keep all of it under a quarter of an hour on two cores.
+# Each in a process of its own, with options that are to keep all of it under a quarter of an hour on two cores.
 COMMANDS = (
     ("peers", "--size", "384", "--runs", "3"),
     ("traversal", "--size", "512", "--runs", "5"),
