@@ -32,9 +32,9 @@ lint: .venv/.ready  ## check the Python code's style
 zip: .venv/.ready  ## build and validate the extension: dist/conic-<version>.zip
 	$(PYTHON) tools/make_zip.py dist
 
-bench: .venv/.ready  ## measure Conic and its peers side by side
-	@tools/setup programs povray tachyon
-	$(PYTHON) -m benchmarks
+bench: .venvs/bench/.ready  ## measure Conic and its peers side by side, with plots: build/bench
+	@tools/setup programs povray tachyon || true  # a peer that is missing is named in the table
+	.venvs/bench/bin/python -m benchmarks all
 
 clean:  ## remove what was built; the environments (.venv, .venvs) stay
 	rm -rf build dist
@@ -50,5 +50,8 @@ $(BLENDERS:%=.venvs/bpy-%/.ready): .venvs/bpy-%/.ready: pyproject.toml tools/set
 
 .venvs/molecules/.ready: pyproject.toml tools/setup
 	@tools/setup molecules
+
+.venvs/bench/.ready: pyproject.toml tools/setup
+	@tools/setup bench
 
 .PHONY: help render molecules test test-all test-app torture lint zip bench clean $(BLENDERS:%=test-bpy-%)

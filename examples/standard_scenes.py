@@ -25,9 +25,9 @@ FLAT = 100000.0  # the exponent of a highlight that is not to be seen
 def balls(depth=4):
     """A sphereflake: (9^(depth + 1) - 1) / 8 mirroring spheres over a square, 7381 by default; each has nine
     a third as large."""
-    scene = _scene((2.1, 1.3, 1.7), (0, 0, 0), (0, 0, 1), 0.01, [(4, 3, 2), (1, -4, 4), (-3, 1, 5)])
-    _add_square(scene, 12.0, -0.5, _nff_material((1, 0.75, 0.33), 0.8))
-    mirror = scene.add_material(_nff_material((1, 0.9, 0.7), 0.5, 0.5, 3.0827))
+    scene = standard_scene((2.1, 1.3, 1.7), (0, 0, 0), (0, 0, 1), 0.01, [(4, 3, 2), (1, -4, 4), (-3, 1, 5)])
+    add_square(scene, 12.0, -0.5, nff_material((1, 0.75, 0.33), 0.8))
+    mirror = scene.add_material(nff_material((1, 0.9, 0.7), 0.5, 0.5, 3.0827))
     children = _nine_directions()
     center, direction, radius = np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), 0.5
     for level in range(depth + 1):
@@ -76,12 +76,12 @@ def tree(depth=11):
         (50, 25, 20),
         (-10, -60, 30),
     ]
-    scene = _scene((4.5, 0.4, 2), (0, 0, 1.5), (0, 0, 1), 1.0, lights)
-    _add_square(scene, 50.0, 0.0, _nff_material((0.2, 0.7, 0.2), 1.0))
-    wood = scene.add_material(_nff_material((0.55, 0.4, 0.2), 1.0))
+    scene = standard_scene((4.5, 0.4, 2), (0, 0, 1.5), (0, 0, 1), 1.0, lights)
+    add_square(scene, 50.0, 0.0, nff_material((0.2, 0.7, 0.2), 1.0))
+    wood = scene.add_material(nff_material((0.55, 0.4, 0.2), 1.0))
     # Each branch carries two: by how much they lean, towards where, and their length in parts of its own.
     forks = [(40.0, 0.0, 0.65), (25.0, 140.0, 0.7)]
-    turns = np.stack([_rotation_z(around) @ _rotation_y(lean) @ _rotation_z(90.0) for lean, around, _ in forks])
+    turns = np.stack([rotation_z(around) @ rotation_y(lean) @ rotation_z(90.0) for lean, around, _ in forks])
     lengths = np.array([length for *_, length in forks])
     base, frame, length, radius = np.zeros((1, 3)), np.eye(3)[None], np.ones(1), 0.15
     for _ in range(depth + 1):
@@ -94,12 +94,12 @@ def tree(depth=11):
     return scene
 
 
-def _rotation_y(degrees):
+def rotation_y(degrees):
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
 
 
-def _rotation_z(degrees):
+def rotation_z(degrees):
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
@@ -107,8 +107,8 @@ def _rotation_z(degrees):
 def tetra(depth=6):
     """Sierpinski's tetrahedron: 4^depth triangles seen from outside, 4096 by default."""
     eye, target = (1.02285, -3.17715, -2.17451), (-0.004103, -0.004103, 0.216539)
-    scene = _scene(eye, target, (-0.816497, -0.816497, 0.816497), 1.0, [(2, -18, -5)])
-    red = scene.add_material(_nff_material((1, 0.2, 0.2), 1.0))
+    scene = standard_scene(eye, target, (-0.816497, -0.816497, 0.816497), 1.0, [(2, -18, -5)])
+    red = scene.add_material(nff_material((1, 0.2, 0.2), 1.0))
     corners = np.array([(-1, -1, 1), (-1, 1, -1), (1, -1, -1), (1, 1, 1)], np.float64)
     center = np.zeros((1, 3))
     for level in range(1, depth):
@@ -122,12 +122,12 @@ def tetra(depth=6):
 def mount(depth=6, seed=3):
     """A fractal mountain of 2 * 4^depth triangles, 8192 by default, under four glass spheres; `seed` makes
     the landscape."""
-    scene = _scene((-1.6, 1.6, 1.7), (0, 0, 0), (0, 0, 1), 0.01, [(-100, -100, 100)])
-    glass = scene.add_material(_nff_material((1, 1, 1), 0.1, 0.1, 101.148, 0.9, 1.5))
+    scene = standard_scene((-1.6, 1.6, 1.7), (0, 0, 0), (0, 0, 1), 0.01, [(-100, -100, 100)])
+    glass = scene.add_material(nff_material((1, 1, 1), 0.1, 0.1, 101.148, 0.9, 1.5))
     centers = [(-0.8, 0.8, 1.20821), (-0.661196, 0.661196, 0.930598)]
     centers += [(-0.749194, 0.98961, 0.930598), (-0.98961, 0.749194, 0.930598)]
     scene.add_spheres(np.array(centers), 0.17, glass)
-    rock = scene.add_material(_nff_material((0.5, 0.45, 0.35), 1.0))
+    rock = scene.add_material(nff_material((0.5, 0.45, 0.35), 1.0))
     height = _landscape(depth, np.random.default_rng(seed))
     side = np.linspace(-1.0, 1.0, len(height))
     points = np.stack([*np.meshgrid(side, side, indexing="ij"), height], axis=-1)
@@ -159,12 +159,14 @@ def lattice(n=12):
     """A cube of (n + 1)^3 small mirroring spheres on a grid, with 3 n (n + 1)^2 struts between them."""
     h = 1.0 / n
     lights = [(2, 0.5, 0.5), (-1, 0.5, 0.5), (0.5, 2, 0.5), (0.5, -1, 0.5), (0.5, 0.5, 2), (0.5, 0.5, -1)]
-    scene = _scene((0.5 + h / 2, 1, 1 - h / 2), (0.5 + h / 2, -1, -1 - h / 2), (0.2, 1, 0), 0.0, lights, angle=60.0)
+    scene = standard_scene(
+        (0.5 + h / 2, 1, 1 - h / 2), (0.5 + h / 2, -1, -1 - h / 2), (0.2, 1, 0), 0.0, lights, angle=60.0
+    )
     grid = np.stack(np.meshgrid(*[np.arange(n + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    joint = scene.add_material(_nff_material((0.9, 0.9, 0.9), 0.5, 0.5, 3.0827))
+    joint = scene.add_material(nff_material((0.9, 0.9, 0.9), 0.5, 0.5, 3.0827))
     scene.add_spheres(grid * h, 0.25 * h, joint)
     for axis in range(3):
-        strut = scene.add_material(_nff_material(np.where(np.arange(3) == axis, 0.9, 0.1), 0.99))
+        strut = scene.add_material(nff_material(np.where(np.arange(3) == axis, 0.9, 0.1), 0.99))
         start, step = grid[grid[:, axis] < n] * h, np.eye(3)[axis] * h
         scene.add_cylinders(start + 0.12375 * step, start + 0.87625 * step, 0.0625 * h, strut, caps=False)
     return scene
@@ -173,19 +175,20 @@ def lattice(n=12):
 FAMILIES = {"balls": balls, "tree": tree, "tetra": tetra, "mount": mount, "lattice": lattice}
 
 
-def _scene(eye, target, up, hither, lights, angle=45.0):
+def standard_scene(eye, target, up, hither, lights, angle=45.0):
+    """A scene without shapes under the databases' sky; its lights, at the points given, add up to white."""
     camera = Camera.look_at(eye, target, up, angle, clip=(hither, 1e30))
     color = (1.0 / np.sqrt(len(lights)),) * 3
     return Scene(camera=camera, world=World(color=SKY), lights=[Light.constant(at, color) for at in lights])
 
 
-def _nff_material(color, kd, ks=0.0, shine=FLAT, transmit=0.0, ior=1.0):
+def nff_material(color, kd, ks=0.0, shine=FLAT, transmit=0.0, ior=1.0):
     """The material of NFF's `f` record."""
     diffuse = tuple(kd * np.asarray(color, np.float64))
     return Material(diffuse=diffuse, reflect=ks, highlight=ks, shine=shine, transmit=transmit, ior=ior, fresnel=False)
 
 
-def _add_square(scene, half, z, material):
+def add_square(scene, half, z, material):
     """A square that is seen from above."""
     a, b, c, d = (half * np.array([(x, y, z / half)]) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1)))
     index = scene.add_material(material)
