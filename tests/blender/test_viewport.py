@@ -604,9 +604,9 @@ def test_good_trees_follow_quick_ones_and_the_picture_goes_on(view, crowd):
 def test_an_edit_goes_before_good_trees(view, crowd, monkeypatch):
     gate, prepare_better = threading.Event(), LoadedScene.prepare_better
 
-    def wait(loaded):
+    def wait(loaded, stopped):
         assert gate.wait(60.0)
-        return prepare_better(loaded)
+        return prepare_better(loaded, stopped)
 
     monkeypatch.setattr(LoadedScene, "prepare_better", wait)
     while view.redraw() or not draws()[-1].finished:
@@ -622,7 +622,7 @@ def test_an_edit_goes_before_good_trees(view, crowd, monkeypatch):
 
 
 def test_good_trees_that_cannot_be_built_are_reported_and_not_tried_again(view, crowd, monkeypatch):
-    def fail(_loaded):
+    def fail(_loaded, _stopped):
         raise SceneError("no memory")
 
     monkeypatch.setattr(LoadedScene, "prepare_better", fail)
