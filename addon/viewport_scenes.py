@@ -41,6 +41,9 @@ class ViewportScene:
     def __init__(self):
         self.key = None  # of what it shows, see `_key`
         self.report = LogReporter()
+        self._renewal = None  # the `Renewal` under way; what has changed since it was read makes this stale
+        self._better = None  # another one, of good trees for what is drawn
+        self.loaded = None
         self.device = blender_device()
         self.loaded = LoadedScene(self.device)
         self.reader = SceneReader(self.report)
@@ -48,8 +51,6 @@ class ViewportScene:
         self.error = ""  # why what was read last could not be loaded
         self.statistics = None  # of what is loaded, until its first picture is there
         self.sessions = weakref.WeakSet()  # the viewports that show it
-        self._renewal = None  # the `Renewal` under way; what has changed since it was read makes this stale
-        self._better = None  # another one, of good trees for what is drawn
 
     @property
     def ready(self):
@@ -124,7 +125,11 @@ class ViewportScene:
         self.report.begin()
         statistics, found = Statistics("Viewport"), SyncStatistics()
         with timed(statistics.seconds, "read"):
-            scene = self.reader.read(depsgraph, *view.size, camera=view.camera, space=space, statistics=found)
+            views = [session.picture.view for session in self.sessions if session.picture and session.picture.view]
+            others = [(each.camera, each.size[1]) for each in views]
+            scene = self.reader.read(
+                depsgraph, *view.size, camera=view.camera, space=space, others=others, statistics=found
+            )
         statistics.add_reading(found)
         settings = sync_settings(depsgraph.scene_eval, True)
         return Renewal(self.loaded, partial(self.loaded.prepare, scene, settings, True), statistics)
@@ -172,7 +177,8 @@ class ViewportScene:
     def __del__(self):
         """Free what the GPU holds here and now: the last reference may be that of another thread."""
         self._drop()
-        self.loaded.free()
+        if self.loaded is not None:  # there was a GPU
+            self.loaded.free()
 
 
 def explain(error, report):

@@ -61,7 +61,7 @@ def measure(name, size, runs, most):
 
 
 def _sphereflake(families):
-    """How many times longer 81 times more spheres take, None where they were not measured."""
+    """How many times longer 81 times as many spheres take, None where they were not measured."""
     rows = {row["name"]: row["trace"]["median"] for row in families.get("balls", {"rows": []})["rows"]}
     return rows["balls:6"] / rows["balls:4"] if {"balls:4", "balls:6"} <= rows.keys() else None
 
@@ -94,6 +94,6 @@ def table(values):
     made.notes.append("exponent: of the power of the number of primitives that fits the seconds of its family best.")
     if values["sphereflake"]:
         times = digits(values["sphereflake"])
-        made.notes.append(f"A sphereflake of 597,871 spheres, 81 times more than 7,381, takes {times} times as long.")
+        made.notes.append(f"A sphereflake of 597,871 spheres, 81 times as many as 7,381, takes {times} times as long.")
     made.notes.append(values["device"])
     return made

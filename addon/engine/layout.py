@@ -442,7 +442,9 @@ def split_index(index):
 
 def pack_leaf(kind, count, index_high):
     """The `leaf` field of a node, what a reference has above the low part of its index: kind and number of primitives
-    (0: an inner node) and the high part of the index."""
+    (0: an inner node) and the high part of the index. ValueError for an index of more than `INDEX_BITS`."""
+    if np.max(index_high, initial=0) >> (INDEX_BITS - LOW_BITS):
+        raise ValueError(f"a reference has {INDEX_BITS} bits for an index")
     holds = np.where(np.asarray(count) > 0, 1 + (np.asarray(kind) << COUNT_BITS) + np.asarray(count) - 1, 0)
     return np.asarray(index_high) + (holds << (INDEX_BITS - LOW_BITS))
 

@@ -277,7 +277,7 @@ class LoadedScene:
         self.warnings, self.seconds = update.warnings, update.seconds
         self.version += bool(update.change & Change.FILM)
         if before:
-            textures, before.textures = before.textures, {}
+            textures, before.textures, before.program = before.textures, {}, None
             kept = set(map(id, drawn.textures.values()))
             self._release([texture for texture in textures.values() if id(texture) not in kept])
 
@@ -300,10 +300,10 @@ class LoadedScene:
         return {name: 16 * room for name, room in self.drawn.rooms.items()} if self.drawn else {}
 
     def free(self):
-        """Give back the textures, here and now: the thread of a `prepare` that nobody waits for does not keep them, as
-        it does the `DrawnScene`. Programs stay with the device."""
+        """Give back the textures and the program, here and now: the thread of a `prepare` that nobody waits for does
+        not keep them, as it does the `DrawnScene`."""
         if self.drawn:
-            textures, self.drawn.textures = self.drawn.textures, {}
+            textures, self.drawn.textures, self.drawn.program = self.drawn.textures, {}, None
             self._release(list(textures.values()))
         self.drawn = None
 

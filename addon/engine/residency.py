@@ -163,10 +163,13 @@ class Residency:
         return [name for arena, arena_names in names.items() if not self.arenas[arena].end for name in arena_names]
 
     def fits(self, limit):
-        """Whether all lies within the first `limit` texels of its texture."""
+        """Whether all lies within the first `limit` texels of its texture, and where references can lead."""
         ends = {name: arena.end for name, arena in self.arenas.items()}
         texels = {cls.kind: max(cls.record.texels, cls.surface_record.texels) for cls in BY_KIND}
-        texels |= {"node": layout.NODE.texels, "row": layout.DATA_WIDTH}
+        texels |= {"node": layout.NODE.texels}
+        if any(ends[name] > 1 << layout.INDEX_BITS for name in texels):
+            return False
+        texels |= {"row": layout.DATA_WIDTH}
         return all(end * texels.get(name, 1) <= max(limit, layout.DATA_WIDTH) for name, end in ends.items())
 
 

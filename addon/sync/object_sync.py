@@ -69,7 +69,7 @@ class _OfObject:
 class ObjectSync:
     """Reads the objects of a depsgraph, a `SceneCopies`, then places them in the engine scene."""
 
-    def __init__(self, scene, memory, shadings, lights, reports, depsgraph, copies, height):
+    def __init__(self, scene, memory, shadings, lights, reports, depsgraph, copies, eyes):
         self._scene, self._memory, self._shadings = scene, memory, shadings
         self._lights, self._reports, self._copies = lights, reports, copies
         self._depsgraph = depsgraph
@@ -80,7 +80,7 @@ class ObjectSync:
         strands = [copies for copies in self._fresh() if copies.kind in STRANDS]
         self._links = LightLinks(lights, reports)
         self._visibilities = Visibilities(depsgraph.view_layer, self._links)
-        self.pixels = PixelSizes(scene.camera, height, strands)
+        self.pixels = PixelSizes(eyes, strands)
         memory.get("pixel sizes", self.pixels.settle, version=object())
         self._contents = Contents(depsgraph, self.pixels, memory)
         self._common = memory.get("common", lambda _: object(), (self._common_key(), self._links.groups))

@@ -115,7 +115,7 @@ def _pieces(copies, depsgraph):
         camera = camera_of_render(None, depsgraph, render.resolution_x, render.resolution_y, reports=_silent())
     except SceneError:
         return None
-    contents = Contents(depsgraph, PixelSizes(camera, render.resolution_y, [copies]))
+    contents = Contents(depsgraph, PixelSizes([(camera, render.resolution_y)], [copies]))
     found = Counter()
     for content in contents.of(copies, (Shadings(Scene(), None, _silent()).of(None),)).contents:
         found.update({part.kind: len(part) for _, part in content.drawn.kinds()})

@@ -11,22 +11,23 @@ STRANDS = {"CURVES", "CURVE", "HAIR"}
 
 
 class PixelSizes:
-    """How long a pixel is, in the space of an object, where the object is nearest to the camera.
+    """How long a pixel is, in the space of an object, where the object is nearest to one of those that see it.
 
-    `camera`: an engine Camera; `height` of the picture in pixels.
+    `eyes`: (engine Camera, height of its picture in pixels) of each.
     """
 
     #: Of its own size, how near the camera an object counts at least: it may stand in the middle of it.
     _NEAREST = 0.02
 
-    def __init__(self, camera, height, all_copies):
+    def __init__(self, eyes, all_copies):
         self._least, self._owners, self._places = {}, {}, {}
         for copies in all_copies:
             if copies.kind in STRANDS:
                 key, places = self._key(copies), _places(copies)
                 self._owners.setdefault(key, (copies.kind, original_key(copies.obj)))
                 self._places.setdefault(key, []).append(places)
-                self._least[key] = min(self._least.get(key, np.inf), self._length(places, camera, height))
+                lengths = (self._length(places, camera, height) for camera, height in eyes)
+                self._least[key] = min(self._least.get(key, np.inf), *lengths)
 
     def of(self, copies):
         """The length, for all copies of the data in the scene."""

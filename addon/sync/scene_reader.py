@@ -71,23 +71,24 @@ class SceneReader:
         """Whether strands, as they were read, are too coarse for an engine Camera and a picture of this height."""
         return self._pixels is not None and self._pixels.are_too_long(camera, height)
 
-    def read(self, depsgraph, width, height, *, engine=None, camera=None, space=None, statistics=None):
+    def read(self, depsgraph, width, height, *, engine=None, camera=None, space=None, others=(), statistics=None):
         """The Scene of a depsgraph, for a frame of width x height pixels. Raises SceneError where there is no camera.
 
         `engine`: the RenderEngine that asks, None outside of a render. `camera`: an engine Camera to use instead of the
-        scene's. `space`: the SpaceView3D that shows it, None for a render. `statistics`: a `SyncStatistics` to fill.
+        scene's. `space`: the SpaceView3D that shows it, None for a render. `others`: (engine Camera, height of the
+        picture) of further views that show the scene. `statistics`: a `SyncStatistics` to fill.
         """
         statistics = statistics or SyncStatistics()
         reports = Reports(self._report)
         try:
             if camera is None:
                 camera = camera_of_render(engine, depsgraph, width, height, reports=reports)
-            return self._read(depsgraph, camera, height, space, reports, statistics)
+            return self._read(depsgraph, camera, [(camera, height), *others], space, reports, statistics)
         except Exception:
             self.forget()
             raise
 
-    def _read(self, depsgraph, camera, height, space, reports, statistics):
+    def _read(self, depsgraph, camera, eyes, space, reports, statistics):
         with timed(statistics.seconds, "collect"):
             copies = SceneCopies(depsgraph, shown_in(space))
             self._begin(depsgraph, copies, reports)
@@ -103,7 +104,7 @@ class SceneReader:
             layers = tuple(owner for owner in (view_layer, depsgraph.scene_eval, world) if owner is not None)
             shadings = Shadings(scene, images, reports, layers, memory, self._material_numbers)
             lights = Lights(scene, reports, memory)
-            objects = ObjectSync(scene, memory, shadings, lights, reports, depsgraph, copies, height)
+            objects = ObjectSync(scene, memory, shadings, lights, reports, depsgraph, copies, eyes)
         with timed(statistics.seconds, "read"):
             statistics.objects |= objects.read()
         with timed(statistics.seconds, "place"):

@@ -4,7 +4,9 @@ import glob
 import importlib.metadata
 import importlib.util
 import os
+import re
 import time
+from pathlib import Path
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from .base import Peer
 from .camera_rays import camera_rays
 
 _VARIANTS = ("llvm_mono", "llvm_ad_mono", "llvm_ad_rgb")
-_LLVM = "/usr/lib/*/libLLVM-*.so*"
+_LLVM = "/usr/lib/*/libLLVM*.so*"
 
 
 class Mitsuba(Peer):
@@ -81,7 +83,8 @@ class Mitsuba(Peer):
 
 
 def _libraries():
-    return sorted(glob.glob(_LLVM))
+    """Paths of LLVM's library, the newest last."""
+    return sorted(glob.glob(_LLVM), key=lambda path: [int(digits) for digits in re.findall(r"\d+", Path(path).name)])
 
 
 def _scene_dict(mitsuba, scene):

@@ -100,6 +100,8 @@ def test_references_survive_float32():
     assert len(np.unique(leaf)) == len(leaf) and 0 <= leaf.min() and leaf.max() < 2 ** (32 - layout.LOW_BITS)
     stored = leaf.astype(np.float32)
     assert (stored == leaf).all()
+    with pytest.raises(ValueError, match="26 bits"):
+        layout.pack_leaf(0, 1, [0, 1 << INDEX_HIGH_BITS])
     for found, given in zip(layout.unpack_leaf(stored[: len(kind)]), (kind, count, high), strict=True):
         assert np.array_equal(found, given)
     assert (layout.unpack_leaf(inner)[1] == 0).all() and np.array_equal(layout.unpack_leaf(inner)[2], range(len(inner)))

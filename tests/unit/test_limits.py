@@ -11,6 +11,7 @@ from addon.engine.material import surface_attribute
 from addon.engine.packing import pack
 from addon.engine.plan import make_plan
 from addon.engine.primitives import BY_KIND, Cylinders, Discs, Spheres, Triangles
+from addon.engine.residency import Residency
 from addon.engine.scene import Camera, Geometry, Image, Instances, Material, Scene
 
 ADVICE = "render it in parts, with fewer of them, or on a device with larger textures"
@@ -126,3 +127,14 @@ def test_images_are_reduced_rather_than_refused():
     scene = scene_of(spheres(3))
     scene.images = [Image(np.zeros((100, 100, 4)), name="wood")]
     assert "was reduced to 50 x 50" in pack(scene, 1).warnings[0]
+
+
+@pytest.mark.parametrize("name", ["sphere", "triangle", "node"])
+def test_what_was_changed_often_is_packed_anew_before_references_run_out(name):
+    """Arenas hold what was there before beside what comes: their ends count, not the number of shapes."""
+    residency = Residency()
+    most = 1 << layout.INDEX_BITS
+    residency.arenas[name].end = most
+    assert residency.fits(1 << 31)
+    residency.arenas[name].end = most + 1
+    assert not residency.fits(1 << 31)

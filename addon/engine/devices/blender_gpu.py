@@ -169,6 +169,8 @@ class BlenderDevice:
 
     def draw(self, program, target, rectangle, textures, uniforms):
         source, shader, batch = program
+        if source in _PROGRAMS:
+            _PROGRAMS.move_to_end(source)
         state = self._gpu.state
         block = self._gpu.types.GPUUniformBuf(self._buffer(uniforms))
         with target.framebuffer.bind():

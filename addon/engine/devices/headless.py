@@ -156,7 +156,7 @@ class HeadlessDevice:
                 number = re.search(r"\b0[:(](\d+)", str(error))
                 line = int(number.group(1)) if number else 0
                 raise DeviceError(describe_compile_error(source, str(error), line)) from error
-            images = loaded_as_images(source, self.name)
+            images = self._images_of(source)
             for unit, name in enumerate(source.textures):
                 if f"{name}_data" in program and name not in images:
                     program[f"{name}_data"] = unit
@@ -164,8 +164,11 @@ class HeadlessDevice:
             self._programs[source] = (source, vertices)
         return self._programs[source]
 
+    def _images_of(self, source):
+        return loaded_as_images(source, self.name) if self._context.version_code >= 420 else ()
+
     def _declarations(self, source):
-        images = loaded_as_images(source, self.name)
+        images = self._images_of(source)
         textures = "".join(f"#define {name} {value}\n" for name, value in texel_readers(source, images))
         for name in source.textures:
             if name in images:
@@ -186,7 +189,7 @@ class HeadlessDevice:
             self._uniforms = gl.buffer(reserve=uniforms.nbytes)
         self._uniforms.write(uniforms.tobytes())
         self._uniforms.bind_to_uniform_block(0)
-        images = loaded_as_images(source, self.name)
+        images = self._images_of(source)
         for unit, name in enumerate(source.textures):
             if name in images:
                 textures[name].bind_to_image(images.index(name), read=True, write=False)
