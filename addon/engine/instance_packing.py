@@ -8,7 +8,8 @@ from . import bvh, layout
 from .errors import SceneError
 from .residency import KeptTree
 from .scene import Instances
-from .tree_packing import QUICK_FROM, WORN, pieces
+from .threads import pieces
+from .tree_packing import QUICK_FROM, WORN
 
 
 @dataclass

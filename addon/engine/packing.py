@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from . import instance_packing, layout
+from .attribute_packing import AttributeWriter
 from .changes import Change
 from .errors import SceneError, StoppedError
 from .expression import is_zero
@@ -23,8 +24,9 @@ from .primitives import BY_KIND, Similarity, invertible
 from .residency import Residency, ResidentInstances, ResidentPlanes, Upload, is_same, references
 from .scene import Visibility
 from .settings import SHADOWS
+from .threads import pieces
 from .timing import timed
-from .tree_packing import QUICK_FROM, AttributeWriter, TreePacker, pieces, rows_by_kind
+from .tree_packing import QUICK_FROM, TreePacker, rows_by_kind
 
 #: Levels that a good tree may have more than a quick one without another program.
 _DEEPER = 6

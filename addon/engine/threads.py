@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 
 LARGE = 1 << 17  # boxes, primitives from which on threads pay
+PIECE = 1 << 15  # rows that are worked on at a time: their temporary arrays stay in the processor's cache
 MOST_THREADS = 4  # memory is hardly faster for more, and each needs room for what it works on
 
 
@@ -18,3 +19,13 @@ def each(function: Callable, items: Iterable, *, worth_it: bool) -> list:
         return [function(item) for item in items]
     with ThreadPoolExecutor(threads) as pool:
         return list(pool.map(function, items))
+
+
+def pieces(count: int) -> Iterator[slice]:
+    """Slices of `PIECE` rows that cover `count` rows."""
+    return (slice(start, min(start + PIECE, count)) for start in range(0, count, PIECE))
+
+
+def each_piece(function: Callable, count: int) -> list:
+    """The results of `function` for the slices of `pieces`, as of `each`; in threads where they are many."""
+    return each(function, pieces(count), worth_it=count >= LARGE)

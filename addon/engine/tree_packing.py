@@ -13,15 +13,11 @@ import numpy as np
 from . import bvh, layout
 from .batches import batches, joined
 from .errors import SceneError
+from .node_packing import move_nodes, write_nodes
 from .primitives import BY_KIND, Similarity
 from .residency import BuiltTree, KeptTree, Resident, Upload
-from .threads import LARGE, each
+from .threads import each_piece
 from .timing import timed
-
-#: How much larger boxes are stored than they are, relative to the largest of their coordinates: what the intersection
-#: with a primitive rounds by. The shader adds the same for the ray's origin.
-_BOX_PADDING = 2.0**-21
-_BOX_PADDING_ABSOLUTE = 1e-20
 
 #: Most primitives in a leaf, and what testing one costs; see `bvh.build`.
 _LEAF_SIZE = 8
@@ -33,9 +29,6 @@ _WORTH_KEEPING = 4096
 QUICK_FROM = 1 << 14
 #: A refitted tree that costs so much more than a built one is built.
 WORN = 1.3
-
-#: Rows worked on at a time: their temporary arrays stay in the processor's cache.
-_PIECE = 1 << 15
 
 
 class TreePacker:
@@ -190,7 +183,7 @@ class TreePacker:
             piece = part.take(order[rows])
             _copy_records((piece.transformed(move) if move else piece).records(), hits[rows], surfaces[rows])
 
-        _each_piece(write, len(order))
+        each_piece(write, len(order))
 
     def _write_moved(self, number, label, part, order, move, spans):
         """As `_write_records`; also the `spans` (6, n) of the primitives' boxes, as `bvh.Form` takes them."""
@@ -204,7 +197,7 @@ class TreePacker:
             spans[3:, rows] = upper.T
             _copy_records(piece.records(), hits[rows], surfaces[rows])
 
-        _each_piece(write, len(order))
+        each_piece(write, len(order))
 
     def _refitted(self, number, parts, move, kept):
         """Put a tree that is kept around other primitives and write their records, both in one go: most of the time
@@ -302,57 +295,10 @@ def rows_by_kind(tree, parts):
         start += len(part)
 
 
-class AttributeWriter:
-    """Attributes that are to be uploaded: the values of the `keys` of an `AttributePlan`, in a range of an `Arena`.
-
-    `first`: texel by key. `numbers`: of the geometries.
-    """
-
-    def __init__(self, plan, keys, arena):
-        self.plan, self.first, self._ranges = plan, {}, {}
-        self._start = end = arena.take(sum(plan.texels[key] for key in keys))
-        for name, geometry, kind in keys:
-            count = plan.texels[name, geometry, kind]
-            self.first[name, geometry, kind] = end
-            self._ranges.setdefault(geometry, {})[name, kind] = (end, count)
-            end += count
-        self.numbers = frozenset(self._ranges)
-        self._texture = layout.data_texture(end - self._start)
-        self.upload = Upload(self._start, self._texture, end - self._start)
-
-    def texels(self, key):
-        """Where the values of a key go, (n, 4)."""
-        start = self.first[key] - self._start
-        return self._texture.reshape(-1, 4)[start : start + self.plan.texels[key]]
-
-    def write(self, place, part, order):
-        """Write the rows `order` of primitives at (geometry number, kind number), where they are asked for."""
-        for name in self.plan.names:
-            if (name, *place) in self.first:
-                values = part.attributes[name]
-                target = self.texels((name, *place)).reshape(-1, values.shape[1], 4)
-                for rows in pieces(len(order)):
-                    target[rows] = values[order[rows]]
-
-    def ranges(self, number):
-        """(First texel, texels) of what lies here of a geometry, by name and kind number."""
-        return self._ranges.get(number, {})
-
-
-def pieces(count):
-    """Slices that cover `count` rows."""
-    return (slice(start, min(start + _PIECE, count)) for start in range(0, count, _PIECE))
-
-
 def _copy_records(records, *targets):
     """Copy arrays of records to others (n,) as floats, which is faster than field by field."""
     for record, target in zip(records, targets, strict=True):
         target.view(np.float32)[:] = record.view(np.float32)
-
-
-def _each_piece(function, count):
-    """Call a function with slices that cover `count` rows, in threads where they are many."""
-    each(function, pieces(count), worth_it=count >= LARGE)
 
 
 def _bounds(parts, move):
@@ -367,44 +313,6 @@ def _bounds(parts, move):
             piece = part.take(rows)
             low[rows], high[rows] = bvh.rounded_outward(*(piece.transformed(move) if move else piece).bounds())
 
-        _each_piece(write, len(part))
+        each_piece(write, len(part))
         start += len(part)
     return lower, upper
-
-
-def write_nodes(records, tree, node_start, primitive_starts, kinds):
-    """Write a tree whose nodes begin at `node_start` into `records` (n,). By label: where its primitives begin, which
-    kind it is."""
-    for rows in pieces(len(tree)):
-        _write_nodes(records[rows], tree, rows, node_start, primitive_starts, kinds)
-
-
-def move_nodes(records, offset):
-    """Let nodes (n,) of `layout.NODE` that lie `offset` further on find each other there."""
-    for rows in pieces(len(records)):
-        piece = records[rows]
-        for child in (0, 1):
-            _, count, high = layout.unpack_leaf(piece[f"leaf_{child}"])
-            inner = count == 0
-            low, high = layout.split_index(
-                piece[f"first_{child}"].astype(np.int64) + (high << layout.LOW_BITS) + offset
-            )
-            piece[f"first_{child}"][inner] = low[inner]
-            piece[f"leaf_{child}"][inner] = layout.pack_leaf(0, 0, high)[inner]
-
-
-def _write_nodes(records, tree, rows, node_start, primitive_starts, kinds):
-    child, count, label = tree.child[rows], tree.count[rows], np.maximum(tree.label[rows], 0)
-    is_leaf, empty = count > 0, (count == 0) & (child < 0)
-    low, high = layout.split_index(
-        np.where(is_leaf, child + primitive_starts[label], np.maximum(child, 0) + node_start)
-    )
-    leaf = layout.pack_leaf(np.where(is_leaf, kinds[label], 0), count, high)
-    boxes = tree.boxes[rows].astype(np.float64)
-    padding = np.abs(boxes).max(axis=(2, 3))[:, :, None] * _BOX_PADDING + _BOX_PADDING_ABSOLUTE
-    lower = np.maximum(boxes[:, :, 0] - padding, -bvh.FAR)
-    upper = np.minimum(boxes[:, :, 1] + padding, bvh.FAR)
-    lower[empty] = upper[empty] = bvh.FAR
-    for c in (0, 1):
-        records[f"lower_{c}"], records[f"upper_{c}"] = lower[:, c], upper[:, c]
-        records[f"first_{c}"], records[f"leaf_{c}"] = low[:, c], leaf[:, c]

@@ -11,7 +11,7 @@ import itertools
 
 import numpy as np
 
-from ..threads import LARGE, each
+from ..threads import LARGE, each, each_piece
 
 MAX_LABELS = 1 << 16
 MORTON_BITS = 21  # per axis: three of them fit in 64 bits
@@ -92,10 +92,15 @@ def spans(lo: np.ndarray, hi: np.ndarray, counts: np.ndarray | None = None) -> n
         reach = np.maximum(-np.minimum.reduceat(lo, start).min(axis=1), np.maximum.reduceat(hi, start).max(axis=1))
         first, second = (np.repeat(factor, counts) for factor in _scale(reach))
     span = np.empty((6, len(lo)), np.float32)
-    for axis in range(3):
-        np.multiply(lo[:, axis], -first, out=span[axis])
-        np.multiply(hi[:, axis], first, out=span[3 + axis])
-    span *= second
+
+    def fill(rows):
+        one, other = (first, second) if counts is None else (first[rows], second[rows])
+        for axis in range(3):
+            np.multiply(lo[rows, axis], -one, out=span[axis, rows])
+            np.multiply(hi[rows, axis], one, out=span[3 + axis, rows])
+        span[:, rows] *= other
+
+    each_piece(fill, len(lo))
     return span
 
 
@@ -130,10 +135,14 @@ def morton_codes(span: np.ndarray) -> np.ndarray:
     centre = span[3:] - span[:3]  # twice the centre, which is as good
     low, side = _grid_cube(centre)
     code = np.zeros(span.shape[1], np.uint64)
-    for axis in range(3):
-        cell = (centre[axis] - low[axis]) * np.float32(2**MORTON_BITS / side)
-        cell = np.clip(cell, 0, 2**MORTON_BITS - 1).astype(np.uint64)
-        code |= _spread_bits(cell) << np.uint64(axis)
+
+    def fill(rows):
+        for axis in range(3):
+            cell = (centre[axis, rows] - low[axis]) * np.float32(2**MORTON_BITS / side)
+            cell = np.clip(cell, 0, 2**MORTON_BITS - 1).astype(np.uint64)
+            code[rows] |= _spread_bits(cell) << np.uint64(axis)
+
+    each_piece(fill, len(code))
     return code
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..threads import each_piece
 from .tree import Bvh, Forest
 
 TRAVERSAL_COST = 1.0  # of visiting a node, which tests the boxes of both its children
-PIECE = 1 << 15  # nodes worked on at a time
 INTERSECTION_COST = 0.5  # of testing a primitive: fewer texels than a node, and a leaf reads them in a row
 
 
@@ -31,8 +31,8 @@ def sah_cost(
     lo, hi = bvh.bounds.astype(np.float64)
     root = _half_area(hi - lo)
     test = cost_by_label(intersection_cost, np.maximum(bvh.label, 0))
-    pieces = (slice(start, start + PIECE) for start in range(0, len(bvh), PIECE))
-    return traversal_cost + sum(float(_costs(bvh, piece, root, traversal_cost, test).sum()) for piece in pieces)
+    costs = each_piece(lambda nodes: float(_costs(bvh, nodes, root, traversal_cost, test).sum()), len(bvh))
+    return traversal_cost + sum(costs)
 
 
 def sah_costs(

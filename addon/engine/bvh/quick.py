@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..threads import each_piece
 from .boxes import morton_codes, sorting_order, spans
 from .build import checked
 from .flatten import LEAF_SIZE, Cut, lay_out, runs
@@ -35,19 +36,37 @@ def quick_build(lo: np.ndarray, hi: np.ndarray, label: np.ndarray | None = None,
 
 def cell_starts(code: np.ndarray, most: int) -> np.ndarray:
     """(k,) int64: where along the curve the largest cells of at most `most` primitives begin; codes (n,) uint64."""
-    # Two neighbours are parted by the cut at the highest bit in which they differ, those with equal codes by their
-    # places. The cell that is cut there reaches as far to either side as the cuts are at lower bits.
-    place = np.arange(1, len(code), dtype=np.uint64)
-    differ = code[1:] ^ code[:-1]
-    bit = np.where(differ == 0, _highest_bit(place ^ (place - np.uint64(1))), 32 + _highest_bit(differ)).astype(np.int8)
-    size = np.full(len(bit), 2, np.int32)
+    bit = np.empty(max(len(code) - 1, 0), np.int8)
+    too_large = np.empty(len(bit), bool)
+
+    def find_bits(rows):
+        # Two neighbours are parted by the cut at the highest bit in which they differ, those with equal codes by their
+        # places.
+        place = np.arange(rows.start + 1, rows.stop + 1, dtype=np.uint64)
+        differ = code[1:][rows] ^ code[:-1][rows]
+        bit[rows] = np.where(differ == 0, _highest_bit(place ^ (place - np.uint64(1))), 32 + _highest_bit(differ))
+
+    def find_sizes(rows):
+        first = max(rows.start - most, 0)  # what lies farther does not matter
+        sizes = _cell_sizes(bit[first : rows.stop + most], most)
+        too_large[rows] = sizes[rows.start - first : rows.stop - first] > most
+
+    each_piece(find_bits, len(bit))
+    each_piece(find_sizes, len(bit))
+    return np.concatenate([[0], np.flatnonzero(too_large) + 1])
+
+
+def _cell_sizes(bit: np.ndarray, most: int) -> np.ndarray:
+    """(n,) sizes, right up to `most`, of the cells that are cut at bits (n,): one reaches as far to either side as the
+    cuts are at lower bits."""
+    size = np.full(len(bit), 2, np.int16)
     for side in (slice(None), slice(None, None, -1)):
         reaches = np.ones(len(bit), bool)
         for distance in range(1, min(most, len(bit)) + 1):
             reaches[side][:distance] = False
             reaches[side][distance:] &= bit[side][:-distance] < bit[side][distance:]
             size += reaches
-    return np.concatenate([[0], np.flatnonzero(size > most) + 1])
+    return size
 
 
 def _highest_bit(code: np.ndarray) -> np.ndarray:
