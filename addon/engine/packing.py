@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import instance_packing, layout
+from . import instance_packing, layout, table_packing
 from .attribute_packing import AttributeWriter
 from .changes import Change
 from .errors import SceneError, StoppedError
@@ -19,19 +19,16 @@ from .light_packing import pack_all_lights
 from .material_packing import MaterialTable
 from .origin import find_origin
 from .packed_scene import PackedScene
-from .plan import PLANE_ATTRIBUTES, check_texels, make_plan
-from .primitives import BY_KIND, Similarity, invertible
+from .plan import PLANE_ATTRIBUTES, check_matrices, make_plan
+from .primitives import BY_KIND, Similarity
 from .residency import Residency, ResidentInstances, ResidentPlanes, Upload, is_same, references
 from .scene import Visibility
 from .settings import SHADOWS
-from .threads import pieces
 from .timing import timed
 from .tree_packing import QUICK_FROM, TreePacker, rows_by_kind
 
 #: Levels that a good tree may have more than a quick one without another program.
 _DEEPER = 6
-#: Blocks of instances that are checked together, where they are small.
-_BLOCKS = 256
 
 
 def pack(scene, max_texture_size, before=None, *, keep=False, quick=False, stopped=None):
@@ -60,28 +57,6 @@ def pack(scene, max_texture_size, before=None, *, keep=False, quick=False, stopp
     return packed
 
 
-def _check_matrices(scene, before):
-    """Raise SceneError where the camera or an instance has a matrix that is not finite or cannot be inverted, or the
-    camera's window is empty. Those of the `Residency` before are known to be right."""
-    camera = np.asarray(scene.camera.matrix, np.float64)
-    if not invertible(camera[None])[0]:
-        raise SceneError("the camera's matrix is not finite or not one of three axes of length 1")
-    left, right, bottom, top = scene.camera.window
-    if not np.isfinite(scene.camera.window).all() or left == right or bottom == top:
-        raise SceneError(f"the camera's window {tuple(scene.camera.window)} has no width or no height")
-    known = {id(placed()) for placed in before.instances.placed} if before.instances else ()
-    new = [placed for placed in scene.instances if id(placed) not in known]
-    for start in range(0, len(new), _BLOCKS):
-        blocks = new[start : start + _BLOCKS]
-        if max(map(len, blocks)) < _BLOCKS and invertible(np.concatenate([placed.matrices for placed in blocks])).all():
-            continue
-        for placed in blocks:
-            if not all(invertible(placed.matrices[rows]).all() for rows in pieces(len(placed))):
-                raise SceneError(
-                    f"instance {placed.name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
-                )
-
-
 def _bounds_of(top, trees):
     """The box (2, 3) of everything that stands in trees, zero without any."""
     if top is not None:
@@ -106,7 +81,7 @@ class _Packer:
         self.numbers, self.there_is_more = self.before.numbers, before is not None
         self.plan = make_plan(scene, self.numbers)
         self.plan.check(limit)
-        _check_matrices(scene, self.before)
+        check_matrices(scene, self.before)
         self.materials = MaterialTable(scene, self.plan)
         self.origin = find_origin(scene, self.plan, self.before.origin)
         self.residency = self.before.copy()
@@ -369,19 +344,9 @@ class _Packer:
             "image": self._images(),
             "attribute": self._directory(trees, attributes),
         }
-        end = 0
-        for name, array in records.items():
-            self.frame[f"{name}_first"] = layout.next_start(end)
-            end = self.frame[f"{name}_first"] + array.nbytes // 16
-        check_texels(end, self.limit, "materials, lights, planes and images")
-        texture = layout.data_texture(end)
-        self.uploads["tables"] = Upload(0, texture, end, anew=True)
-        self.tables = {}
-        for name, array in records.items():
-            texels = array.view(np.float32).reshape(-1, 4)
-            first = self.frame[f"{name}_first"]
-            self.tables[name] = slice(first, first + len(texels))
-            texture.reshape(-1, 4)[self.tables[name]] = texels
+        self.tables, upload = table_packing.lay_out(records, self.limit)
+        self.uploads["tables"] = upload
+        self.frame |= {f"{name}_first": texels.start for name, texels in self.tables.items()}
         return planes
 
     def _planes(self):

@@ -13,12 +13,15 @@ import numpy as np
 from . import layout
 from .errors import SceneError
 from .material_packing import attribute_names
-from .primitives import BY_KIND
+from .primitives import BY_KIND, invertible
 from .scene import Geometry
+from .threads import pieces
 
 _INSTANCE = layout.KINDS.index("instance")
 _IDENTITY = np.eye(4)
 _EMPTY = Geometry(name="none")
+#: Blocks of instances that are checked together, where they are small.
+_BLOCKS = 256
 
 #: Where planes stand in the directory of attributes, (geometry number, kind number): in world space.
 PLANE_ATTRIBUTES = (0, layout.KINDS.index("plane"))
@@ -106,6 +109,28 @@ def check_texels(texels, limit, what):
             f"the scene is too large for this device: {what} need {texels} texels, a texture here holds {limit}; "
             "render it in parts, with fewer of them, or on a device with larger textures"
         )
+
+
+def check_matrices(scene, before):
+    """Raise SceneError where the camera or an instance has a matrix that is not finite or cannot be inverted, or the
+    camera's window is empty. Those of the `Residency` before are known to be right."""
+    camera = np.asarray(scene.camera.matrix, np.float64)
+    if not invertible(camera[None])[0]:
+        raise SceneError("the camera's matrix is not finite or not one of three axes of length 1")
+    left, right, bottom, top = scene.camera.window
+    if not np.isfinite(scene.camera.window).all() or left == right or bottom == top:
+        raise SceneError(f"the camera's window {tuple(scene.camera.window)} has no width or no height")
+    known = {id(placed()) for placed in before.instances.placed} if before.instances else ()
+    new = [placed for placed in scene.instances if id(placed) not in known]
+    for start in range(0, len(new), _BLOCKS):
+        blocks = new[start : start + _BLOCKS]
+        if max(map(len, blocks)) < _BLOCKS and invertible(np.concatenate([placed.matrices for placed in blocks])).all():
+            continue
+        for placed in blocks:
+            if not all(invertible(placed.matrices[rows]).all() for rows in pieces(len(placed))):
+                raise SceneError(
+                    f"instance {placed.name!r} has a scale of 0, axes in one plane or a matrix that is not finite"
+                )
 
 
 @dataclass
