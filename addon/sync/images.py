@@ -11,6 +11,7 @@ from .color_spaces import working_space
 from .image_pixels import Linear, file_path, frame_path, read_clean_file, read_file, read_tiles, to_linear
 from .keys import original_key
 from .memory import Memory
+from .places import Places
 from .reports import Reports
 
 #: Cycles' color for images that are missing.
@@ -35,18 +36,21 @@ class Picture:
 
 #: The token of what depends on the frame.
 FRAME = "frame"
-#: Stands where an image was that is no longer used.
-_VACANT = Image(np.zeros((1, 1, 4), np.uint8), name="vacant")
+
+
+def image_places():
+    """The `Places` of engine Images."""
+    return Places(Image(np.zeros((1, 1, 4), np.uint8), name="vacant"))
 
 
 class Images:
-    """The images of a scene at a frame. `numbers`: (first, count) by key of those of earlier reads, which the scene has
-    already. `asked`: the numbers of all that were asked for, in order; `keys`: (uid, path) of what was read."""
+    """The images of a scene at a frame. `places`: the `Places` of engine Images, those of earlier reads too. `asked`:
+    the numbers of all that were asked for, in order; `keys`: (uid, path) of what was read."""
 
-    def __init__(self, scene, frame=1, memory=None, numbers=None):
-        self._scene, self._frame = scene, frame
+    def __init__(self, frame=1, memory=None, places=None):
+        self._frame = frame
         self._memory = memory or Memory(Reports(lambda level, message: None))
-        self._numbers = {} if numbers is None else numbers
+        self._places = image_places() if places is None else places
         self.asked, self.keys = [], set()
 
     def picture(self, node, warn, *, divided=False):
@@ -79,46 +83,32 @@ class Images:
         a key."""
         return self._numbered(("table", working_space(), *key), None, lambda: ([Image(make(), name=key[0])], False))
 
-    def finish(self):
-        """The read is over: what nobody asked for makes room."""
-        for key in [key for key in self._numbers if self._memory.last(key) is None]:
-            first, count = self._numbers.pop(key)
-            self._scene.images[first : first + count] = [_VACANT] * count
-
     def _numbered(self, key, source, make):
         """The `Picture` of the images that `make` gives, together with whether they are tiles; it is made again where
         `source` is another object than before."""
 
         def made(_):
             images, tiled = make()
-            number = self._place(key, images)
+            number = self._number(key, images)
             return Picture(Parameter(number, "int"), Parameter(len(images), "int") if tiled else None), source
 
         picture = self._memory.get(key, made, id(source))[0]
-        first, count = self._numbers[key]
-        self.asked += range(first, first + count)
+        self.asked += self._places.of(key)
         return picture
 
-    def _place(self, key, images):
-        """The number of the first of images, which get the place that they have had, or one that is vacant."""
-        known = self._numbers.get(key) or self._numbers.pop(self._frame_before(key), None)
-        if known is None and len(images) == 1:
-            known = next(((i, 1) for i, image in enumerate(self._scene.images) if image is _VACANT), None)
-        if known is None or known[1] != len(images):
-            if known is not None:
-                self._scene.images[known[0] : sum(known)] = [_VACANT] * known[1]
-            known = len(self._scene.images), len(images)
-            self._scene.images += images
-        self._scene.images[known[0] : sum(known)] = images
-        self._numbers[key] = known
-        return known[0]
+    def _number(self, key, images):
+        """The number of the first of images; those of the next frame get the place of the one before."""
+        before = self._frame_before(key)
+        if before is not None and not self._places.of(key):
+            self._places.rename(before, key)
+        return self._places.put(key, images)
 
     def _frame_before(self, key):
         """The key of what a sequence showed before, whose place is free now; None where there is none."""
         if key[0] == "table":
             return None
         like = (key[1], *key[3:])
-        found = (other for other in self._numbers if other[0] == "picture" and (other[1], *other[3:]) == like)
+        found = (other for other in self._places.keys() if other[0] == "picture" and (other[1], *other[3:]) == like)
         return next((other for other in found if not self._memory.holds(other)), None)
 
     def _read(self, node, key, previous):

@@ -7,7 +7,6 @@ import bpy
 import numpy as np
 
 from ..engine.errors import SceneError
-from ..engine.scene import Scene
 from ..wording import counted
 from .camera import camera_of_render
 from .compat import has_geometry_sets
@@ -61,7 +60,7 @@ def _own_mesh(obj, depsgraph):
         if primitive not in ("AUTO", "MESH"):
             return "NONE", f"not rendered: the {primitive.lower()} has no faces to take its size from"
         return "MESH", _NO_FACES
-    shadings = Shadings(Scene(), None, _silent())
+    shadings = Shadings(None, _silent())
     slots = tuple(shadings.of(material) for material in materials_of(obj, mesh)) or (shadings.of(None),)
     taken = taken_as(primitive, mesh, slots, depsgraph.scene.conic.recognise, Recognitions(Memory(_silent())))
     return taken.kind, taken.reason
@@ -117,7 +116,7 @@ def _pieces(copies, depsgraph):
         return None
     contents = Contents(depsgraph, PixelSizes([(camera, render.resolution_y)], [copies]))
     found = Counter()
-    for content in contents.of(copies, (Shadings(Scene(), None, _silent()).of(None),)).contents:
+    for content in contents.of(copies, (Shadings(None, _silent()).of(None),)).contents:
         found.update({part.kind: len(part) for _, part in content.drawn.kinds()})
     return found
 

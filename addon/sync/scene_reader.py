@@ -12,20 +12,17 @@ from .attributes import key_of
 from .camera import camera_of_render
 from .changes import Changes, ids_in
 from .image_state import changed_images, image_states
-from .images import FRAME, Images
+from .images import FRAME, Images, image_places
 from .instancing import SceneCopies
 from .keys import original_key
 from .lights import Lights
 from .memory import Memory
 from .object_sync import ObjectSync
 from .reports import Reports
-from .shading import Shadings
+from .shading import Shadings, material_places
 from .visibility import shown_in
 from .world import read_world
 from .world_light import with_light
-
-#: So many materials more than are in use are kept, with their numbers, for the case that they come back.
-_SPARE_MATERIALS = 64
 
 
 @dataclass
@@ -48,12 +45,8 @@ class SceneReader:
     def __init__(self, report):
         self._report = report
         self._changes = Changes()
-        self._clear()
-
-    def _clear(self):
         self._memory = Memory(Reports(self._report))
-        self._materials, self._images = [], []
-        self._material_numbers, self._image_numbers = {}, {}
+        self._materials, self._images = material_places(), image_places()
         self._objects = [], np.empty((0, 4, 4), np.float32)
         self._states, self._frame, self._graph = {}, None, None
         self._pixels = None  # the `PixelSizes` that strands were cut for, None where they are cut in any number
@@ -95,14 +88,13 @@ class SceneReader:
             if depsgraph.scene_eval.render.use_motion_blur:
                 reports.warn("motion blur is not rendered")
             scene = Scene(camera=camera, outline_attribute=outline_attribute(depsgraph.scene_eval))
-            scene.materials, scene.images = self._materials, self._images
             memory = self._memory
-            images = Images(scene, depsgraph.scene_eval.frame_current, memory, self._image_numbers)
+            images = Images(depsgraph.scene_eval.frame_current, memory, self._images)
             view_layer = depsgraph.view_layer_eval
             world = view_layer.world_override or depsgraph.scene_eval.world
-            scene.world = self._world(world, scene, images, reports)
+            scene.world = self._world(world, images, reports)
             layers = tuple(owner for owner in (view_layer, depsgraph.scene_eval, world) if owner is not None)
-            shadings = Shadings(scene, images, reports, layers, memory, self._material_numbers)
+            shadings = Shadings(images, reports, layers, memory, self._materials, scene.outline_attribute)
             lights = Lights(scene, reports, memory)
             objects = ObjectSync(scene, memory, shadings, lights, reports, depsgraph, copies, eyes)
         with timed(statistics.seconds, "read"):
@@ -139,7 +131,7 @@ class SceneReader:
             before, now = matrices, copies.matrices
         return {uids[i] for i in np.flatnonzero((before != now).any(axis=(1, 2)))}
 
-    def _world(self, world, scene, images, reports):
+    def _world(self, world, images, reports):
         """The engine's World of a Blender world, or of None."""
 
         def read(previous):
@@ -152,19 +144,17 @@ class SceneReader:
             return made, numbers
 
         made, numbers = self._memory.get("world", read, None if world is None else original_key(world))
-        return with_light(made, world, [scene.images[number] for number in numbers])
+        return with_light(made, world, [self._images.things[number] for number in numbers])
 
     def _end(self, scene, images):
         """Drop what is no longer in the scene, and give the scene lists of its own."""
         _settle_replacements(scene)
         self._memory.end()
-        images.finish()
         states = self._states | image_states(images.keys)  # to look is slow where they are packed or on a network
         self._states = {key: state for key, state in states.items() if self._memory.last(("image", *key)) is not None}
-        scene.materials, scene.images = list(self._materials), list(self._images)
-        used = sum(self._memory.last(key) is not None for key in self._material_numbers)
-        if len(self._materials) > 2 * used + _SPARE_MATERIALS:
-            self._clear()
+        for places in (self._materials, self._images):
+            places.drop_unused(lambda key: self._memory.last(key) is not None)
+        scene.materials, scene.images = list(self._materials.things), list(self._images.things)
 
 
 def _settle_replacements(scene):

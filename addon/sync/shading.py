@@ -15,9 +15,18 @@ from .keys import original_key
 from .lobes import Lobes
 from .memory import ALWAYS, Memory
 from .nodes import output_source
+from .places import Places
 from .tree_reader import TreeReader, deep_recursion
 
 DEFAULT = Material()  # Blender's grey, for a slot without material
+
+#: So many materials more than are in use are kept: where one of them comes back, the program still serves.
+_SPARE = 64
+
+
+def material_places():
+    """The `Places` of engine Materials."""
+    return Places(Material(), _SPARE)
 
 
 @dataclass(frozen=True)
@@ -40,25 +49,26 @@ class Shading:
 class Shadings:
     """The materials of a scene, each read once, when an object first needs it; it keeps its number from read to read.
 
-    `layers`: the view layer, scene and world, whose properties attributes of the view layer are. `numbers`: of the
-    materials of earlier reads, by key; the scene has them already.
+    `places`: the `Places` of engine Materials, those of earlier reads too. `layers`: the view layer, scene and world,
+    whose properties attributes of the view layer are. `outline_attribute`: see `engine.scene.Scene`.
     """
 
-    def __init__(self, scene, images, reports, layers=(), memory=None, numbers=None):
-        self._scene, self._images, self._reports, self._layers = scene, images, reports, layers
+    def __init__(self, images, reports, layers=(), memory=None, places=None, outline_attribute=""):
+        self._images, self._reports, self._layers = images, reports, layers
         self._memory = memory or Memory(reports)
-        self._numbers = {} if numbers is None else numbers
+        self._places = material_places() if places is None else places
+        self._outline_attribute = outline_attribute
 
     def of(self, material):
         """The `Shading` of a Blender material, or of None: an empty slot, or one whose material was deleted."""
         key = "material", None if material is None else original_key(material)
-        return self._memory.get(key, lambda _: self._read(key, material), self._scene.outline_attribute)
+        return self._memory.get(key, lambda _: self._read(key, material), self._outline_attribute)
 
     def of_sheet(self, shading):
         """The `Shading` of the same material on a surface that is not closed: what enters there is in no body."""
         if not shading.transmits:
             return shading
-        key, source = ("sheet", shading.index), self._scene.materials[shading.index]
+        key, source = ("sheet", shading.index), self._places.things[shading.index]
 
         def made(previous):
             if previous is not None and previous[1:] == (shading, source):
@@ -70,12 +80,10 @@ class Shadings:
 
     def _number(self, key, material):
         """The number of a material, the one that it has had; where it looks as before it stays the same object."""
-        number = self._numbers.get(key)
-        if number is None:
-            self._numbers[key] = number = self._scene.add_material(material)
-        elif fingerprint(material) != fingerprint(self._scene.materials[number]):
-            self._scene.materials[number] = material
-        return number
+        known = self._places.of(key)
+        if known and fingerprint(material) == fingerprint(self._places.things[known[0]]):
+            return known[0]
+        return self._places.put(key, [material])
 
     def _read(self, key, material):
         if material is None:
@@ -98,7 +106,7 @@ class Shadings:
 
     def _keys(self, needed):
         """The attributes to read, sorted: those that a material needs and that of the scene's outlines."""
-        return tuple(sorted({*needed, self._scene.outline_attribute} - {""}))
+        return tuple(sorted({*needed, self._outline_attribute} - {""}))
 
 
 def read_material(material, reader):

@@ -451,7 +451,7 @@ def test_after_any_edits_all_is_as_read_anew(everything, reading, seed):
 def number_of(reading, name):
     """The number of a material."""
     key = "material", bpy.data.materials[name].session_uid
-    return reading.reader._material_numbers[key]
+    return reading.reader._materials.of(key)[0]
 
 
 def recolor(_random):

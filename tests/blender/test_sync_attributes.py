@@ -5,11 +5,10 @@ import numpy as np
 import pytest
 
 from addon.engine.expression import Expression, attribute_keys, is_constant
-from addon.engine.scene import Scene
 from addon.sync import attributes
 from addon.sync.images import Images
 from addon.sync.reports import Reports
-from addon.sync.shading import Shadings
+from addon.sync.shading import Shadings, material_places
 from examples.every_geometry import NodeTree
 from tests.blender.building import add_camera, image, link, material, mesh_of, node, quad, sync
 
@@ -189,10 +188,10 @@ def shading(build, layers=()):
     """(engine Material, Shading, messages) of a material whose tree `build(tree, output)` makes."""
     made, tree, output = material("stuff")
     build(tree, output)
-    scene, messages = Scene(), []
+    places, messages = material_places(), []
     reports = Reports(lambda level, text: messages.append(text))
-    read = Shadings(scene, Images(scene, reports), reports, layers).of(made)
-    return scene.materials[read.index], read, messages
+    read = Shadings(Images(), reports, layers, places=places).of(made)
+    return places.things[read.index], read, messages
 
 
 def constant(value):
