@@ -62,11 +62,10 @@ class Contents:
     """
 
     def __init__(self, depsgraph, pixels, memory=None):
-        self._depsgraph, self._pixels = depsgraph, pixels
-        self._memory = memory or Memory(Reports(lambda level, message: None))
-        self._settings = depsgraph.scene_eval.conic
-        self._recognitions = Recognitions(self._memory)
-        self._notes, self._tokens = [], ()
+        self.depsgraph, self.pixels = depsgraph, pixels
+        self.memory = memory or Memory(Reports(lambda level, message: None))
+        self.settings = depsgraph.scene_eval.conic
+        self.recognitions = Recognitions(self.memory)
         self.before = []
 
     def key(self, copies):
@@ -78,13 +77,40 @@ class Contents:
 
     def of(self, copies, shadings):
         """What copies whose slots have `shadings` are drawn as (`Drawn`)."""
-        self._tokens = geometry_of(original_key(copies.data)), geometry_of(original_key(copies.obj))
-        self._memory.depend(*self._tokens)
-        self._notes = []
-        contents = self._contents(copies, shadings)
-        return Drawn(contents, tuple(dict.fromkeys(self._notes)))
+        reading = _Reading(self, copies, shadings)
+        self.memory.depend(*reading.tokens)
+        contents = reading.contents()
+        return Drawn(contents, tuple(dict.fromkeys(reading.notes)))
 
-    def _contents(self, copies, shadings):
+    def as_before(self, geometry):
+        """The Geometry itself, or the one before that it equals; if it has as many primitives it replaces that."""
+        counts = None if geometry is None else geometry.counts()
+        found = [old for old in self.before if old.counts() == counts]
+        like = next((old for old in found if old.name == geometry.name), found[0] if found else None)
+        if like is None:
+            return geometry
+        self.before.remove(like)
+        if geometry.name == like.name and same_primitives(geometry, like):
+            return like
+        geometry.replaces = weakref.ref(like)
+        return geometry
+
+
+class _Reading:
+    """The contents of one lot of copies, read for a `Contents`, `owner`. `tokens`: of what they are made from. `notes`:
+    what there is to report."""
+
+    def __init__(self, owner, copies, shadings):
+        self._owner, self._memory, self._settings = owner, owner.memory, owner.settings
+        self._copies, self._obj, self._data = copies, copies.obj, copies.data
+        self._shadings, self._slots = shadings, len(shadings)
+        self._keys = of_primitives({key for shading in shadings for key in shading.attributes})
+        self.tokens = geometry_of(original_key(copies.data)), geometry_of(original_key(copies.obj))
+        self.notes = []
+
+    def contents(self):
+        """`Content`s, a tuple."""
+        kind, keys = self._copies.kind, self._keys
         readers = {
             "MESH": self._mesh,
             "POINTCLOUD": self._points,
@@ -92,62 +118,61 @@ class Contents:
             "CURVE": self._legacy_curve,
             "HAIR": self._hair,
         }
-        if copies.kind not in readers:
-            what = _NOT_RENDERED.get(copies.kind, copies.kind.lower())
-            self._notes.append(f" is not rendered: it is {what}")
+        if kind not in readers:
+            what = _NOT_RENDERED.get(kind, kind.lower())
+            self.notes.append(f" is not rendered: it is {what}")
             return ()
-        keys = of_primitives({key for shading in shadings for key in shading.attributes})
-        found = tuple(readers[copies.kind](copies, shadings, keys))
-        constants = of_texture_space(copies.data, keys) if found else {}
-        if copies.kind in _STRANDS:
-            constants |= of_strands(keys, is_particle_hair=copies.kind == "HAIR")
+        found = tuple(readers[kind]())
+        constants = of_texture_space(self._data, keys) if found else {}
+        if kind in _STRANDS:
+            constants |= of_strands(keys, is_particle_hair=kind == "HAIR")
         if not constants:
             return found
         return tuple(replace(content, constants=constants | content.constants) for content in found)
 
-    def _mesh(self, copies, shadings, keys):
-        obj, mesh = copies.obj, copies.data
+    def _mesh(self):
+        obj, mesh = self._obj, self._data
         if len(mesh.edges) and obj.conic.strand_radius > 0.0:
-            yield from self._edges(copies, keys)
+            yield from self._edges()
         primitive = obj.conic.primitive
         if not len(mesh.polygons) and primitive != "PLANE":
             if primitive not in ("AUTO", "MESH") and not len(mesh.edges):
-                self._notes.append(f" is not rendered: its {primitive.lower()} has no faces to take its size from")
+                self.notes.append(f" is not rendered: its {primitive.lower()} has no faces to take its size from")
             return
-        taken = taken_as(primitive, mesh, shadings, self._settings.recognise, self._recognitions)
+        taken = taken_as(primitive, mesh, self._shadings, self._settings.recognise, self._owner.recognitions)
         if taken.problem:
-            self._notes.append(f": rendered as a {taken.reason}")
+            self.notes.append(f": rendered as a {taken.reason}")
         if taken.shape is not None:
             self._report_lost(taken)
             constants = {key: value for key, value in taken.constants.items() if value is not None}
             yield Content(taken.shape, taken.kind.lower(), is_closed_shape(taken.shape), constants)
             return
-        geometry = self._triangles(copies, shadings, keys, taken.islands)
+        geometry = self._triangles(taken.islands)
         if geometry is not None:
-            matters = any(shading.transmits for shading in shadings)
+            matters = any(shading.transmits for shading in self._shadings)
             yield Content(geometry, "mesh", not matters or self._is_closed(mesh))
 
     def _report_lost(self, taken):
         """Name what a shape that was chosen by hand cannot show."""
         for key, value in taken.constants.items():
             if value is None:
-                self._notes.append(f": on an exact shape {title_of(key)} is not rendered")
+                self.notes.append(f": on an exact shape {title_of(key)} is not rendered")
 
     def _is_closed(self, mesh):
         def read(_):
-            self._memory.depend(*self._tokens)
+            self._memory.depend(*self.tokens)
             return is_closed_mesh(mesh)
 
         return self._memory.get(("closed", data_key(mesh)), read)
 
-    def _triangles(self, copies, shadings, keys, islands):
+    def _triangles(self, islands):
         """The Geometry of a mesh, shared by all objects that have the mesh and its uv needs in common."""
-        mesh, maps = copies.data, tuple(shading.uv_map for shading in shadings)
+        mesh, maps = self._data, tuple(shading.uv_map for shading in self._shadings)
         maps = maps if any(name is not None for name in maps) else ()
 
         def read(note):
-            found = self._islands(mesh, keys) if islands and not maps else None
-            read = read_triangles(mesh, len(shadings), maps, keys, None if found is None else found.rest)
+            found = self._islands(mesh) if islands and not maps else None
+            read = read_triangles(mesh, self._slots, maps, self._keys, None if found is None else found.rest)
             if read.dropped:
                 dropped, verb = counted(read.dropped, "triangle"), "is" if read.dropped == 1 else "are"
                 note(f": {dropped} with NaN or infinite vertices {verb} not rendered")
@@ -155,70 +180,69 @@ class Contents:
             return Geometry(*parts, name=mesh.name) if parts else None
 
         smooth_only = islands and self._settings.recognise == "SMOOTH"
-        return self._geometry(("triangles", data_key(mesh), len(shadings), maps, keys, islands, smooth_only), read)
+        return self._geometry(("triangles", data_key(mesh), self._slots, maps, self._keys, islands, smooth_only), read)
 
-    def _islands(self, mesh, keys):
-        values = {key: (read, domain) for key, read, domain in of_elements(mesh, keys) if domain != "EDGE"}
+    def _islands(self, mesh):
+        values = {key: (read, domain) for key, read, domain in of_elements(mesh, self._keys) if domain != "EDGE"}
         return find_islands(read_mesh(mesh), values, smooth_only=self._settings.recognise == "SMOOTH")
 
-    def _points(self, copies, shadings, keys):
-        cloud = copies.data
+    def _points(self):
+        cloud = self._data
 
         def read(note):
-            found = read_points(cloud, len(shadings), keys)
+            found = read_points(cloud, self._slots, self._keys)
             if found.not_finite:
                 note(f" has {counted(found.not_finite, 'point')} not finite in place or radius, not rendered")
             if found.without_radius:
                 note(f" has {counted(found.without_radius, 'point')} without a radius above 0, not rendered")
             return found.geometry
 
-        return self._once(("points", data_key(cloud), len(shadings), keys), read, "point cloud")
+        return self._once(("points", data_key(cloud), self._slots, self._keys), read, "point cloud")
 
-    def _curves(self, copies, shadings, keys):
-        curves, radius = copies.data, 1.0
-        if copies.obj.type != "CURVES":  # Blender renders those of hair alone
-            radius = copies.obj.conic.strand_radius
+    def _curves(self):
+        curves, radius = self._data, 1.0
+        if self._obj.type != "CURVES":  # Blender renders those of hair alone
+            radius = self._obj.conic.strand_radius
             if "radius" not in curves.attributes:
                 radius /= DEFAULT_RADIUS
         if not radius > 0.0:
             return ()
         return self._strands(
-            copies,
-            (data_key(curves), len(shadings), keys, radius),
-            lambda sampling: strands_of_curves(curves, sampling, len(shadings), keys, radius),
+            (data_key(curves), self._slots, self._keys, radius),
+            lambda sampling: strands_of_curves(curves, sampling, self._slots, self._keys, radius),
         )
 
-    def _legacy_curve(self, copies, shadings, keys):
-        obj = copies.obj
-        if not copies.is_own:
-            self._notes.append(" makes curves by geometry nodes, which are rendered from Blender 4.5 on")
+    def _legacy_curve(self):
+        obj = self._obj
+        if not self._copies.is_own:
+            self.notes.append(" makes curves by geometry nodes, which are rendered from Blender 4.5 on")
             return ()
         radius = obj.conic.strand_radius
         if not radius > 0.0:
             return ()
         return self._strands(
-            copies,
-            (original_key(obj), data_key(obj.data), radius, len(shadings), keys),
-            lambda sampling: strands_of_legacy_curve(obj, radius, sampling, self._depsgraph, len(shadings), keys),
+            (original_key(obj), data_key(obj.data), radius, self._slots, self._keys),
+            lambda sampling: strands_of_legacy_curve(
+                obj, radius, sampling, self._owner.depsgraph, self._slots, self._keys
+            ),
         )
 
-    def _edges(self, copies, keys):
-        mesh, radius = copies.data, copies.obj.conic.strand_radius
+    def _edges(self):
+        mesh, radius = self._data, self._obj.conic.strand_radius
         return self._strands(
-            copies, (data_key(mesh), keys, radius), lambda sampling: strands_of_edges(mesh, radius, keys)
+            (data_key(mesh), self._keys, radius), lambda sampling: strands_of_edges(mesh, radius, self._keys)
         )
 
-    def _hair(self, copies, shadings, keys):
-        obj, slots = copies.obj, len(shadings)
-        sampling = sampling_of(self._settings, self._pixels.of(copies))
-        render = self._depsgraph.mode == "RENDER"
-        for number, system in enumerate(strands_of_particles(obj, sampling, render, slots, keys)):
-            key = original_key(obj), "hair", slots, keys, number
-            yield from self._strands(copies, key, lambda _, system=system: system.read)
+    def _hair(self):
+        obj, sampling = self._obj, self._sampling()
+        render = self._owner.depsgraph.mode == "RENDER"
+        for number, system in enumerate(strands_of_particles(obj, sampling, render, self._slots, self._keys)):
+            key = original_key(obj), "hair", self._slots, self._keys, number
+            yield from self._strands(key, lambda _, system=system: system.read)
 
-    def _strands(self, copies, key, read):
+    def _strands(self, key, read):
         """The content of strands, by `read(sampling)`."""
-        sampling = sampling_of(self._settings, self._pixels.of(copies))
+        sampling = self._sampling()
 
         def geometry(note):
             found: Read = read(sampling)
@@ -232,6 +256,9 @@ class Contents:
 
         return self._once((*key, "strands", sampling), geometry, "curves")
 
+    def _sampling(self):
+        return sampling_of(self._settings, self._owner.pixels.of(self._copies))
+
     def _once(self, key, read, kind):
         geometry = self._geometry(key, read)
         return () if geometry is None else (Content(geometry, kind),)
@@ -241,22 +268,9 @@ class Contents:
 
         def made(_):
             notes = []
-            self._memory.depend(*self._tokens)
-            return self._as_before(read(notes.append)), notes
+            self._memory.depend(*self.tokens)
+            return self._owner.as_before(read(notes.append)), notes
 
         geometry, notes = self._memory.get(("geometry", *key), made)
-        self._notes += notes
-        return geometry
-
-    def _as_before(self, geometry):
-        """The Geometry itself, or the one before that it equals; if it has as many primitives it replaces that."""
-        counts = None if geometry is None else geometry.counts()
-        found = [old for old in self.before if old.counts() == counts]
-        like = next((old for old in found if old.name == geometry.name), found[0] if found else None)
-        if like is None:
-            return geometry
-        self.before.remove(like)
-        if geometry.name == like.name and same_primitives(geometry, like):
-            return like
-        geometry.replaces = weakref.ref(like)
+        self.notes += notes
         return geometry
