@@ -101,9 +101,9 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
 #endif
   Ray ray = world_ray;
   Slabs slabs = bvh_slabs(ray);
-  int stack[BVH_STACK_SIZE];   /* references */
+  int stack[BVH_STACK_SIZE + 1];   /* references */
 #ifdef HAS_INSTANCES
-  int stack_t[BVH_STACK_SIZE]; /* where the ray enters their boxes */
+  int stack_t[BVH_STACK_SIZE + 1]; /* where the ray enters their boxes */
 #endif
   int top = 0;
   int reference = REFERENCE(int(frame_root), int(frame_root_high));
@@ -155,13 +155,11 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
       int t_near = min(t_0, t_1);
       int t_far = max(t_0, t_1);
       reference = first_is_near ? child_0 : child_1;
-      if (t_far < BVH_MISS) {
-        stack[top] = first_is_near ? child_1 : child_0;
+      stack[top] = first_is_near ? child_1 : child_0;
 #ifdef HAS_INSTANCES
-        stack_t[top] = t_far;
+      stack_t[top] = t_far;
 #endif
-        top++;
-      }
+      top += t_far < BVH_MISS ? 1 : 0;
       pop = t_near == BVH_MISS;
 #ifdef HAS_INSTANCES
       enters = t_near;
