@@ -101,7 +101,9 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
 #endif
   Ray ray = world_ray;
   Slabs slabs = bvh_slabs(ray);
-  int stack[BVH_STACK_SIZE + 1];   /* references */
+  /* References that wait, but the last, which is in a register: it is at hand while memory is read. The place beyond the last
+   * is written whether it counts or not: processors guess badly which lanes ask to write. */
+  int stack[BVH_STACK_SIZE + 1];
 #ifdef HAS_INSTANCES
   int stack_t[BVH_STACK_SIZE + 1]; /* where the ray enters their boxes */
 #endif

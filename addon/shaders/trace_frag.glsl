@@ -196,7 +196,7 @@ void main()
       light = turns;
 #endif
 #ifdef HAS_TRANSMISSION
-      stack[stacked] = scattered.refracted; /* counts only where both rays go on */
+      stack[stacked] = scattered.refracted; /* it waits only where both rays go on; see bvh_traverse */
       if (scattered.refracts && scattered.reflects) {
         if (stacked < PATH_STACK_SIZE) {
           stacked++;
