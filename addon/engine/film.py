@@ -15,7 +15,8 @@ _BANDS = 32
 _MOST_CHANGE = 4.0
 #: Seconds that a draw may be said to take for no pixels.
 _MOST_FIXED = 0.004
-_BAND_ROWS, _TILE_COLUMNS = 8, 16  # at least
+#: Tiles are of so many rows and columns, or a multiple: rasterisers work on blocks, those at an edge twice.
+_BAND_ROWS, _TILE_COLUMNS = 8, 16
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,11 @@ class Tile:
 
     rectangle: tuple
     sample: int
+
+
+def _whole(size, block):
+    """The largest multiple of `block` up to `size`, at least one."""
+    return max(int(size // block), 1) * block
 
 
 def sample_offset(sample):
@@ -116,10 +122,10 @@ class Film:
         """The tile to draw now, of a size that takes about `seconds`; `advance` says that it was drawn."""
         rows = self.pace.rows(seconds, self._y, self)
         if self._x == 0:
-            self._band = int(min(max(rows, _BAND_ROWS), self.height - self._y))
+            self._band = min(_whole(rows, _BAND_ROWS), self.height - self._y)
         width = self.width - self._x
         if rows < self._band:
-            width = min(width, max(_TILE_COLUMNS, int(self.width * rows / self._band)))
+            width = min(width, _whole(self.width * rows / self._band, _TILE_COLUMNS))
         return Tile((self._x, self._y, width, self._band), self._sample)
 
     def advance(self, tile, seconds):

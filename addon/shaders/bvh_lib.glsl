@@ -101,13 +101,17 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
 #endif
   Ray ray = world_ray;
   Slabs slabs = bvh_slabs(ray);
-  int stack[BVH_STACK_SIZE];   /* references */
+  /* References that wait, but the last, which is in a register: it is at hand while memory is read. The place beyond the last
+   * is written whether it counts or not: processors guess badly which lanes ask to write. */
+  int stack[BVH_STACK_SIZE + 1];
 #ifdef HAS_INSTANCES
-  int stack_t[BVH_STACK_SIZE]; /* where the ray enters their boxes */
+  int stack_t[BVH_STACK_SIZE + 1]; /* where the ray enters their boxes */
 #endif
   int top = 0;
+  int next = 0;
   int reference = REFERENCE(int(frame_root), int(frame_root_high));
 #ifdef HAS_INSTANCES
+  int next_t = 0;
   int instance = -1;
   int instance_top = -1; /* where the stack stood when the instance was entered */
   int enters = 0;        /* where the ray enters the box of the reference in hand */
@@ -131,9 +135,11 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
         }
 #endif
         top--;
-        reference = stack[top];
+        reference = next;
+        next = stack[top];
 #ifdef HAS_INSTANCES
-        enters = stack_t[top];
+        enters = next_t;
+        next_t = stack_t[top];
         if (enters >= floatBitsToInt(hit.t)) {
           if (top == 0) {
             break;
@@ -155,13 +161,13 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
       int t_near = min(t_0, t_1);
       int t_far = max(t_0, t_1);
       reference = first_is_near ? child_0 : child_1;
-      if (t_far < BVH_MISS) {
-        stack[top] = first_is_near ? child_1 : child_0;
+      stack[top] = next;
+      next = t_far < BVH_MISS ? (first_is_near ? child_1 : child_0) : next;
 #ifdef HAS_INSTANCES
-        stack_t[top] = t_far;
+      stack_t[top] = next_t;
+      next_t = t_far < BVH_MISS ? t_far : next_t;
 #endif
-        top++;
-      }
+      top += t_far < BVH_MISS ? 1 : 0;
       pop = t_near == BVH_MISS;
 #ifdef HAS_INSTANCES
       enters = t_near;

@@ -22,13 +22,15 @@ vec2 quadric_roots(float a, float b, float c, float discriminant)
  *
  * Along the ray this is a t^2 + 2 b t + c = 0, measured from the ray's point closest to the middle of the body, so that the
  * digits left are those of the body's size. The discriminant b^2 - a c would lose them again; it equals
- * |R d - k dz p|^2 - |p x d|^2, p and d across the axis, where both lengths keep theirs. A ray steeper than the side
+ * |R d - k dz p|^2 - |p x d|^2, p and d across the axis, where both squares keep theirs: (l - m)(l + m) of the lengths
+ * would be no better, since they are rounded too, and takes two more roots. A ray steeper than the side
  * (a < 0) always meets the double cone, whatever rounding says near the tip. */
 float quadric_hit(vec3 base, vec3 along, float base_radius, float apex_radius, bool outside_seen, Ray ray, float t_max)
 {
   float height = length(along);
-  vec3 axis = along / height;
-  float slope = (apex_radius - base_radius) / height;
+  float per_height = 1.0 / height;
+  vec3 axis = per_height * along;
+  float slope = per_height * (apex_radius - base_radius);
   vec3 from_middle = (ray.origin - base) - 0.5 * along;
   float closest = -dot(from_middle, ray.direction);
   vec3 offset = from_middle + closest * ray.direction + 0.5 * along;
@@ -39,15 +41,14 @@ float quadric_hit(vec3 base, vec3 along, float base_radius, float apex_radius, b
   float radius = base_radius + slope * z;
   float growth = slope * dz;
   float a = dot(direction, direction) - growth * growth;
-  float to_edge = length(radius * direction - growth * position);
-  float to_ray = length(cross(position, direction));
-  float discriminant = (to_edge - to_ray) * (to_edge + to_ray);
+  vec3 to_edge = radius * direction - growth * position;
+  vec3 to_ray = cross(position, direction);
+  float discriminant = dot(to_edge, to_edge) - dot(to_ray, to_ray);
   if (discriminant < 0.0 && a >= 0.0) {
     return t_max;
   }
   float b = dot(position, direction) - growth * radius;
-  float distance_to_axis = length(position);
-  float c = (distance_to_axis - radius) * (distance_to_axis + radius);
+  float c = dot(position, position) - radius * radius;
   vec2 roots = quadric_roots(a, b, c, max(discriminant, 0.0));
   vec2 heights = vec2(z) + roots * dz;
   roots += closest;

@@ -46,7 +46,7 @@ void main()
   Ray eye = camera_ray(gl_FragCoord.xy, t_max);
   Path path = shading_path(eye, t_max, vec3(1.0), 1, medium_outside());
   bool path_ends = false; /* no path goes on when the lights are done */
-  Path stack[PATH_STACK_SIZE];
+  Path stack[PATH_STACK_SIZE + 1];
   int stacked = 0;
   Lit lit;
   Shadow shadow;
@@ -196,9 +196,10 @@ void main()
       light = turns;
 #endif
 #ifdef HAS_TRANSMISSION
+      stack[stacked] = scattered.refracted; /* it waits only where both rays go on; see bvh_traverse */
       if (scattered.refracts && scattered.reflects) {
         if (stacked < PATH_STACK_SIZE) {
-          stack[stacked++] = scattered.refracted;
+          stacked++;
         }
         else {
           TRACE_COUNT(dropped);
