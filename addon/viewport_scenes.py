@@ -142,13 +142,11 @@ class ViewportScene:
             self._log(update, {"read": statistics.seconds["read"]})
             if update.change & Change.FILM:
                 self.statistics = statistics
-            self.tag_redraw()  # viewports that have drawn already too
 
     def _upload_better(self, seconds):
         if update := self._better.upload(0.5 * seconds):
             self._better = None
             self._log(update, {})
-            self.tag_redraw()
 
     @staticmethod
     def _log(update, spent):

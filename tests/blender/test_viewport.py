@@ -18,7 +18,7 @@ from addon.engine.packing import pack
 from addon.engine.tree_packing import QUICK_FROM
 from addon.operators.nff_shapes import new_point_cloud
 from addon.sync.scene_reader import SceneReader
-from addon.viewport_pace import MOST, RedrawPace
+from addon.viewport_pace import MOST, MOST_AT_ONCE, RedrawPace
 from addon.viewport_picture import STEPS
 from tests.blender.viewport_stand_in import HEIGHT, WIDTH, StandIn, draws, loads, mark
 
@@ -633,30 +633,60 @@ def test_good_trees_that_cannot_be_built_are_reported_and_not_tried_again(view, 
 # How long redraws take
 
 
-def test_redraws_take_longer_where_nothing_happens_and_blender_takes_its_time(monkeypatch):
-    now = [0.0]
+@pytest.fixture
+def clock(monkeypatch):
+    """[seconds] that `time.perf_counter` says it is."""
+    now = [100.0]
     monkeypatch.setattr(time, "perf_counter", lambda: now[0])
+    return now
+
+
+def redraw(pace, clock, drawing, overhead, traces=True):
+    """A redraw that was asked for, of `drawing` seconds and so many of Blender's own, half of them before."""
+    pace.ask()
+    clock[0] += 0.5 * overhead
+    pace.begin()
+    clock[0] += drawing
+    pace.end(traces)
+    clock[0] += 0.5 * overhead
+
+
+def test_tracing_takes_longer_where_nothing_happens(clock):
     pace, taken = RedrawPace(), []
-    for pause in (0.1,) * 12:
-        pace.begin()
+    for _ in range(12):
         taken.append(pace.seconds(0.02))
-        now[0] += taken[-1]
-        pace.end(asked=True)
-        now[0] += pause
-    assert taken[0] == 0.02 and taken == sorted(taken) and taken[-1] == MOST
+        clock[0] += taken[-1]
+    assert taken[0] == 0.02 and taken == sorted(taken) and taken[-1] == MOST_AT_ONCE
     pace.changed()
     assert pace.seconds(0.02) == 0.02
-    now[0] += 100.0
-    for pause in (0.001,) * 3:
-        pace.begin()
-        pace.end(asked=True)
-        now[0] += pause
+    assert pace.seconds(0.5) == 0.5, "who sets a long frame gets it"
+
+
+def test_redraws_are_fewer_where_blender_takes_its_time(clock):
+    pace = RedrawPace()
+    for overhead, interval in ((0.001, 0.02), (0.01, 0.06), (0.2, MOST)):
+        for _ in range(5):
+            redraw(pace, clock, 0.007, overhead)
+            pace.go_on()
+        assert pace.overhead == pytest.approx(overhead)
+        for passed, due in ((0.9, False), (1.1, True)):
+            pace.begin()
+            clock[0] += passed * interval
+            assert pace.is_due(0.02) == due
+
+
+def test_only_redraws_that_tracing_waits_for_tell_what_they_cost(clock):
+    pace = RedrawPace()
+    redraw(pace, clock, 0.007, 0.05, traces=False)
+    clock[0] += 5.0
+    pace.go_on()
+    pace.ask()
+    pace.changed()
     pace.begin()
-    assert pace.seconds(0.02) == 0.02, "fewer redraws would spare nothing"
-    pace.end(asked=False)
-    now[0] += 5.0
-    pace.begin()
-    assert pace.overhead < 0.01, "nobody asked for this one: it was no pause"
+    pace.end(True)
+    clock[0] += 5.0
+    pace.go_on()
+    assert pace.overhead == 0.0
 
 
 def test_strands_are_cut_finer_where_the_view_comes_near(view):
