@@ -32,6 +32,11 @@ class Renewal:
         """Wait until it is prepared, for at most `seconds`; whether it is."""
         return self._job.wait(seconds)
 
+    @property
+    def change(self):
+        """What differs from what is drawn, a `Change`, once it is prepared. Raises what preparing it has raised."""
+        return self._job.result().change
+
     def upload(self, seconds):
         """Bring it to the GPU for about `seconds`; the `Update` once all of it is there, else None. Raises what
         preparing it has raised."""

@@ -97,7 +97,7 @@ class ViewportSession:
         """Bring the scene nearer to Blender's data. Without a picture nobody waits for another redraw."""
         if not self.scene.settled:
             self.pace.changed()
-        seconds, before = self.pace.seconds(self._frame) if self.scene.ready else MOST, self.scene.loaded.drawn
+        seconds, before = self.pace.seconds(self._frame) if self.picture else MOST, self.scene.loaded.drawn
         self.scene.renew(depsgraph, view, space, seconds, max(0.5 * seconds, self.pace.overhead))
         if self.scene.prepared:
             self.tag_redraw()
@@ -117,7 +117,7 @@ class ViewportSession:
             if self.scene:
                 self.scene.sessions.discard(self)
             self.scene, self.picture, self.version = scene, None, None
-            scene.sessions.add(self)
+            scene.attach(self)
 
     def _show(self, view, started):
         """Show what is there, of a new view what can be traced at once; whether the picture has begun anew. `started`:

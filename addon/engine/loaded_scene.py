@@ -223,6 +223,9 @@ class LoadedScene:
         """
         if update.before is not self.drawn:
             raise RuntimeError("an update to a scene was prepared before another one was applied")
+        if not update.change:  # what is drawn stays, and an update to it that is being prepared can follow
+            self.drawn.settings, self.warnings, self.seconds = update.settings, update.warnings, update.seconds
+            return True
         deadline = np.inf if seconds is None else time.perf_counter() + seconds
         update.job = update.job or self._apply(update, in_pieces=seconds is not None)
         try:

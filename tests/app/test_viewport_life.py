@@ -89,6 +89,7 @@ def test_another_engine_and_back(rested, engine):
     rested.run("bpy.context.scene.render.engine = engine", engine=engine)
     rested.rest()
     rested.picture(engine.lower())
+    rested.rest(1.5)
     assert rested.run("result = len(viewport_scenes._scenes)") == 0
     rested.run("bpy.context.scene.render.engine = 'CONIC'")
     rested.rest()

@@ -10,7 +10,7 @@ import gpu
 import numpy as np
 import pytest
 
-from addon import viewport_log, viewport_scenes, viewport_session
+from addon import viewport_kept, viewport_log, viewport_scenes, viewport_session
 from addon.engine import DeviceError, LoadedScene, SceneError, loaded_scene
 from addon.engine.changes import Change
 from addon.engine.devices.blender_gpu import BlenderDevice
@@ -20,7 +20,7 @@ from addon.operators.nff_shapes import new_point_cloud
 from addon.sync.scene_reader import SceneReader
 from addon.viewport_pace import MOST, MOST_AT_ONCE, RedrawPace
 from addon.viewport_picture import STEPS
-from tests.blender.viewport_stand_in import HEIGHT, WIDTH, StandIn, draws, loads, mark
+from tests.blender.viewport_stand_in import HEIGHT, WIDTH, StandIn, draws, loads, mark, records
 
 pytestmark = pytest.mark.skipif(not hasattr(gpu, "init"), reason="no GPU context in the background before Blender 5.2")
 
@@ -471,8 +471,8 @@ def test_what_is_prepared_for_nobody_keeps_nothing_on_the_gpu(view, monkeypatch)
 
 def test_undo_and_new_files_read_anew(view, monkeypatch):
     forgotten = []
-    monkeypatch.setattr(SceneReader, "forget", lambda self: forgotten.append(self))
     view.settle()
+    monkeypatch.setattr(SceneReader, "forget", lambda self: forgotten.append(self))
     for name in ("undo_post", "redo_post", "load_post"):
         for handler in getattr(bpy.app.handlers, name):
             if handler.__module__ == viewport_scenes.__name__:
@@ -621,6 +621,27 @@ def test_an_edit_goes_before_good_trees(view, crowd, monkeypatch):
     assert loads()[-1].change == Change.TREES and not view.session.scene.loaded.can_improve
 
 
+def test_good_trees_are_not_given_up_for_an_edit_that_changes_nothing(view, crowd, monkeypatch):
+    gate, begun, prepare_better = threading.Event(), [], LoadedScene.prepare_better
+
+    def wait(loaded, stopped):
+        begun.append(stopped)
+        assert gate.wait(60.0)
+        return prepare_better(loaded, stopped)
+
+    monkeypatch.setattr(LoadedScene, "prepare_better", wait)
+    while view.redraw() or not draws()[-1].finished:
+        pass
+    bpy.context.scene.conic.preview_samples = 5  # no other picture
+    bpy.context.object.update_tag()
+    while len(records(viewport_log.Load)) < 2 or view.redraw():
+        view.redraw()
+    assert draws()[-1].sample == 5 and draws()[-1].finished
+    gate.set()
+    view.settle()
+    assert len(begun) == 1 and loads()[-1].change == Change.TREES
+
+
 def test_good_trees_that_cannot_be_built_are_reported_and_not_tried_again(view, crowd, monkeypatch):
     def fail(_loaded, _stopped):
         raise SceneError("no memory")
@@ -628,6 +649,66 @@ def test_good_trees_that_cannot_be_built_are_reported_and_not_tried_again(view, 
     monkeypatch.setattr(LoadedScene, "prepare_better", fail)
     view.settle()
     assert "no memory" in view.session.error and draws()[-1].finished and not view.redraw()
+
+
+# Scenes that nobody shows
+
+
+@pytest.fixture
+def kept(view, monkeypatch):
+    """viewport_kept as in a window, but that nobody looks."""
+    monkeypatch.setattr(viewport_kept, "keep", lambda scene: viewport_kept._kept.update({scene: time.monotonic()}))
+    yield viewport_kept
+    viewport_kept._kept.clear()
+
+
+def test_who_comes_back_finds_the_scene_and_what_has_changed(kept, view):
+    before = view.settle()
+    loaded = view.session.scene.loaded
+    view.close()
+    again = StandIn()
+    count = len(loads())
+    assert np.array_equal(again.settle(), before) and again.session.scene.loaded is loaded
+    assert len(loads()) == count, "nothing was loaded again"
+    again.close()
+    bpy.app.handlers.depsgraph_update_post.remove(mark)  # no viewport, no `view_update`
+    bpy.context.object.location.x = 1.0
+    bpy.context.view_layer.update()
+    bpy.app.handlers.depsgraph_update_post.append(mark)
+    again = StandIn()
+    assert not np.array_equal(again.settle(), before) and again.session.scene.loaded is loaded
+    again.close()
+
+
+def test_scenes_are_kept_for_a_while(kept, view, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    bpy.context.scene.render.engine = "CONIC"
+    view.redraw()
+    now[0] += 100.0
+    scene = weakref.ref(view.session.scene)
+    assert kept._look() and len(kept._kept) == 1, "it is shown"
+    view.close()
+    now[0] += 0.9 * kept.SECONDS
+    assert kept._look() and scene()
+    now[0] += 0.2 * kept.SECONDS
+    assert kept._look() is None and not scene()
+
+
+@pytest.mark.parametrize("end", ["render", "load", "another engine"])
+def test_scenes_are_not_kept(kept, view, end):
+    bpy.context.scene.render.engine = "CONIC"
+    view.redraw()
+    scene = weakref.ref(view.session.scene)
+    view.close()
+    if end == "render":
+        kept._before_render()
+    elif end == "load":
+        viewport_scenes._begin_loading()
+        viewport_scenes._end_replacing()
+    else:
+        bpy.context.scene.render.engine = "BLENDER_WORKBENCH"
+    assert kept._look() is None and not scene()
 
 
 # How long redraws take
