@@ -18,8 +18,7 @@ from addon.engine.packing import pack
 from addon.engine.tree_packing import QUICK_FROM
 from addon.operators.nff_shapes import new_point_cloud
 from addon.sync.scene_reader import SceneReader
-from addon.viewport_pace import MOST, MOST_AT_ONCE, RedrawPace
-from addon.viewport_picture import STEPS
+from addon.viewport_picture import STEPS, ViewportPicture
 from tests.blender.viewport_stand_in import HEIGHT, WIDTH, StandIn, draws, loads, mark, records
 
 pytestmark = pytest.mark.skipif(not hasattr(gpu, "init"), reason="no GPU context in the background before Blender 5.2")
@@ -711,63 +710,43 @@ def test_scenes_are_not_kept(kept, view, end):
     assert kept._look() is None and not scene()
 
 
-# How long redraws take
+# Tracing between redraws
 
 
-@pytest.fixture
-def clock(monkeypatch):
-    """[seconds] that `time.perf_counter` says it is."""
-    now = [100.0]
-    monkeypatch.setattr(time, "perf_counter", lambda: now[0])
-    return now
+def test_a_picture_that_fails_between_redraws_is_reported_once(view, monkeypatch):
+    def fail(*_arguments):
+        raise DeviceError("lost")
+
+    view.settle()
+    view.look_from(1.0)
+    view.redraw()
+    with monkeypatch.context() as patch:
+        patch.setattr(ViewportPicture, "advance", fail)
+        before = view.engine.redraws
+        assert not view.session.trace() and view.engine.redraws == before + 1
+        assert not view.session.trace(), "nothing is left of it"
+    assert not view.redraw() and "lost" in view.engine.text
+    view.settle()
+    assert draws()[-1].finished and "lost" not in view.engine.text
 
 
-def redraw(pace, clock, drawing, overhead, traces=True):
-    """A redraw that was asked for, of `drawing` seconds and so many of Blender's own, half of them before."""
-    pace.ask()
-    clock[0] += 0.5 * overhead
-    pace.begin()
-    clock[0] += drawing
-    pace.end(traces)
-    clock[0] += 0.5 * overhead
-
-
-def test_tracing_takes_longer_where_nothing_happens(clock):
-    pace, taken = RedrawPace(), []
-    for _ in range(40):
-        taken.append(pace.seconds(0.02))
-        clock[0] += taken[-1]
-    assert taken[0] == 0.02 and taken == sorted(taken) and taken[-1] == MOST_AT_ONCE
-    pace.changed()
-    assert pace.seconds(0.02) == 0.02
-    assert pace.seconds(0.5) == 0.5, "who sets a long frame gets it"
-
-
-def test_redraws_are_fewer_where_blender_takes_its_time(clock):
-    pace = RedrawPace()
-    for overhead, interval in ((0.001, 0.02), (0.01, 0.06), (0.2, MOST)):
-        for _ in range(5):
-            redraw(pace, clock, 0.007, overhead)
-            pace.go_on()
-        assert pace.overhead == pytest.approx(overhead)
-        for passed, due in ((0.9, False), (1.1, True)):
-            pace.begin()
-            clock[0] += passed * interval
-            assert pace.is_due(0.02) == due
-
-
-def test_only_redraws_that_tracing_waits_for_tell_what_they_cost(clock):
-    pace = RedrawPace()
-    redraw(pace, clock, 0.007, 0.05, traces=False)
-    clock[0] += 5.0
-    pace.go_on()
-    pace.ask()
-    pace.changed()
-    pace.begin()
-    pace.end(True)
-    clock[0] += 5.0
-    pace.go_on()
-    assert pace.overhead == 0.0
+def test_a_redraw_is_asked_for_when_there_is_something_to_see(view):
+    """The whole picture first, and the last sample; slices that give neither ask for none until it is time."""
+    bpy.context.scene.conic.preview_samples = 3
+    bpy.context.scene.conic.preview_frame_seconds = 0.001  # the first picture is a coarse one
+    view.settle()
+    view.look_from(1.0)
+    view.redraw()
+    assert draws()[-1].step > 1
+    shown = []
+    while not view.session.picture.finished:
+        before = view.engine.redraws
+        while view.session.trace():
+            assert view.engine.redraws == before
+        assert view.engine.redraws == before + 1
+        shown.append((view.session.picture.step, view.session.picture.sample))
+        view.session.pace.begin()  # the redraw
+    assert shown[-1] == (1, 3) and (1, 1) in shown
 
 
 def test_strands_are_cut_finer_where_the_view_comes_near(view):
