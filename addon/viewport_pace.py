@@ -11,7 +11,7 @@ MOST = 0.25
 #: Of tracing between two looks at what the user does: so late may the answer come to who does something at last.
 MOST_AT_ONCE = 0.1
 #: Of the time that nothing has happened.
-_SHARE = 0.1
+_SHARE = 0.3
 #: Of what Blender's part takes: the rest of the time goes into the picture.
 _TIMES = 6.0
 _REMEMBERED = 4

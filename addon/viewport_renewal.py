@@ -33,15 +33,14 @@ class Renewal:
         return self._job.wait(seconds)
 
     @property
-    def change(self):
-        """What differs from what is drawn, a `Change`, once it is prepared. Raises what preparing it has raised."""
-        return self._job.result().change
+    def update(self):
+        """The `Update`, once it is prepared. Raises what preparing it has raised."""
+        self._update = self._update or self._job.result()
+        return self._update
 
     def upload(self, seconds):
-        """Bring it to the GPU for about `seconds`; the `Update` once all of it is there, else None. Raises what
-        preparing it has raised."""
-        self._update = self._update or self._job.result()
-        return self._update if self._loaded.apply(self._update, seconds) else None
+        """Bring it to the GPU for about `seconds`; the `Update` once all of it is there, else None."""
+        return self.update if self._loaded.apply(self.update, seconds) else None
 
     def stop(self):
         """Nobody wants it any more: have the other thread end soon."""

@@ -146,8 +146,10 @@ class ViewportScene:
         return Renewal(self.loaded, partial(self.loaded.prepare, scene, settings, True), statistics)
 
     def _upload(self, seconds):
-        """Bring what was prepared to the GPU, or a part of it. Good trees are those of what is drawn now."""
-        if self._renewal.change:
+        """Bring what was prepared to the GPU, or a part of it. Good trees are those of what is drawn now; while they
+        are being built, the work is not lost where they stay."""
+        update = self._renewal.update
+        if update.change and self._better and not (self._better.preparing and update.leaves_trees):
             self._drop_better()
         if update := self._renewal.upload(0.5 * seconds):
             statistics, self._renewal = self._renewal.statistics, None
@@ -156,7 +158,9 @@ class ViewportScene:
                 self.statistics = statistics
 
     def _upload_better(self, seconds):
-        if update := self._better.upload(0.5 * seconds):
+        if self._better.update.before is not self.loaded.drawn:  # what is drawn is not what these were prepared for
+            self._drop_better()
+        elif update := self._better.upload(0.5 * seconds):
             self._better = None
             self._log(update, {})
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from addon import viewport_kept, viewport_log, viewport_scenes, viewport_session
-from addon.engine import DeviceError, LoadedScene, SceneError, loaded_scene
+from addon.engine import DeviceError, LoadedScene, SceneError, bvh, loaded_scene
 from addon.engine.changes import Change
 from addon.engine.devices.blender_gpu import BlenderDevice
 from addon.engine.packing import pack
@@ -639,6 +639,34 @@ def test_good_trees_are_not_given_up_for_an_edit_that_changes_nothing(view, crow
     gate.set()
     view.settle()
     assert len(begun) == 1 and loads()[-1].change == Change.TREES
+
+
+def test_the_work_on_good_trees_outlives_an_edit(view, crowd, monkeypatch):
+    gate, begun, built, build = threading.Event(), threading.Event(), [], bvh.build
+
+    def wait(lower, *arguments, **options):
+        if len(lower) >= QUICK_FROM:
+            built.append(len(lower))
+            begun.set()
+            assert gate.wait(60.0)
+        return build(lower, *arguments, **options)
+
+    monkeypatch.setattr(bvh, "build", wait)
+    while view.redraw() or not draws()[-1].finished:
+        pass
+    assert begun.wait(60.0)
+    bpy.context.object.location.x = 1.0
+    while len(loads()) < 2 or view.redraw():
+        view.redraw()
+    assert loads()[-1].change & Change.FILM
+    gate.set()
+    view.settle()
+    assert len(built) == 1 and [load.change for load in loads()][2:] == [Change.TREES]
+    assert not view.session.scene.loaded.can_improve
+    scene = view.session.scene.reader.read(
+        bpy.context.evaluated_depsgraph_get(), 8, 8, camera=view.session.picture.view.camera
+    )
+    assert not any(geometry.tree for geometry in (scene.shapes, *(placed.geometry for placed in scene.instances)))
 
 
 def test_good_trees_that_cannot_be_built_are_reported_and_not_tried_again(view, crowd, monkeypatch):
