@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import gpu_thread, viewport_display, viewport_scenes
+from . import gpu_thread, viewport_display, viewport_scenes, viewport_tracing
 from .engine.devices import blender_gpu
 from .render_session import render_layer
 from .viewport_session import ViewportSession
@@ -48,6 +48,7 @@ def register():
 def unregister():
     bpy.utils.unregister_class(ConicRenderEngine)
     viewport_scenes.unregister()
+    viewport_tracing.unregister()
     gpu_thread.unregister()
     viewport_display.unregister()
     blender_gpu.free_programs()  # as the display shader: Python would free them after Blender's end

@@ -1,46 +1,65 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How long a redraw of a viewport may take: as long as a frame while something happens. Longer where nothing does, and
-Blender's own part of a redraw is what takes the time: fewer redraws leave more of it for the picture."""
+"""How long tracing for a viewport may take at a time, and how often it is redrawn: as a frame while something happens.
+Where nothing does, and Blender's part of a redraw is what takes the time, fewer redraws leave more of it for the
+picture."""
 
 import time
 from collections import deque
 
-#: What a redraw may take at most beside a frame: so late may the answer come to who does something at last.
+#: Seconds from redraw to redraw at most, where there is something new to show.
 MOST = 0.25
+#: Of tracing between two looks at what the user does: so late may the answer come to who does something at last.
+MOST_AT_ONCE = 0.1
 #: Of the time that nothing has happened.
-_SHARE = 0.6
+_SHARE = 0.3
 #: Of what Blender's part takes: the rest of the time goes into the picture.
-_TIMES = 3.0
+_TIMES = 6.0
 _REMEMBERED = 4
 
 
 class RedrawPace:
-    """Learns what redraws that follow each other cost beside the drawing itself. Times are in seconds."""
+    """Learns what redraws cost beside the drawing itself. Times are in seconds."""
 
     def __init__(self):
-        self._pauses = deque(maxlen=_REMEMBERED)  # from the end of a redraw to the beginning of the next
-        self._ended = self._asked = None
-        self._rested_since = time.perf_counter()
+        self._overheads = deque(maxlen=_REMEMBERED)
+        self._asked = None  # when a redraw was asked for; None where nobody did, or its end was seen
+        self._drawing = 0.0  # what drawing took in it
+        self._began = self._rested_since = time.perf_counter()
 
     @property
     def overhead(self):
         """What Blender's part of a redraw takes, MOST at most; 0 where it is not known."""
-        return min(min(self._pauses, default=0.0), MOST)
+        return min(min(self._overheads, default=0.0), MOST)
+
+    def ask(self):
+        """A redraw is asked for, at once."""
+        self._asked, self._drawing = time.perf_counter(), 0.0
 
     def begin(self):
         """A redraw begins."""
-        if self._asked:
-            self._pauses.append(time.perf_counter() - self._ended)
+        self._began = time.perf_counter()
+
+    def end(self, traces):
+        """The drawing is over; Blender goes on. `traces`: whether tracing goes on after that."""
+        self._drawing += time.perf_counter() - self._began
+        if not traces:
+            self._asked = None
+
+    def go_on(self):
+        """Tracing goes on after a redraw, or has not been interrupted by one."""
+        if self._asked is not None and self._drawing:
+            self._overheads.append(time.perf_counter() - self._asked - self._drawing)
+        self._asked = None
 
     def changed(self):
-        """Something is happening."""
-        self._rested_since = time.perf_counter()
+        """Something is happening: who asked for a redraw does not know what Blender does in it."""
+        self._rested_since, self._asked = time.perf_counter(), None
 
     def seconds(self, frame):
-        """What this redraw may take where one may take `frame` while something happens."""
+        """What tracing may take at a time, where it may take `frame` while something happens."""
         rested = time.perf_counter() - self._rested_since
-        return max(frame, min(_SHARE * rested, _TIMES * self.overhead, MOST))
+        return max(frame, min(_SHARE * rested, MOST_AT_ONCE))
 
-    def end(self, asked):
-        """The redraw is over; `asked`: whether it has asked for the next one."""
-        self._ended, self._asked = time.perf_counter(), asked
+    def is_due(self, frame):
+        """Whether it is time for the next redraw, with something new but nothing whole to show."""
+        return time.perf_counter() - self._began > max(frame, min(_TIMES * self.overhead, MOST))

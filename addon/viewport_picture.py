@@ -4,6 +4,7 @@
 import time
 
 from .viewport_display import Layer
+from .viewport_pace import MOST
 
 #: How many finished pixels one of a picture is wide, from the finest on. None at 2: it would cost a quarter of the real
 #: one, for little.
@@ -57,15 +58,17 @@ class ViewportPicture:
         self._stack()
 
     def advance(self, seconds):
-        """Go on for about `seconds`."""
-        deadline = time.perf_counter() + seconds
+        """Go on for about `seconds`, or until the picture has become finer or is finished: whether it is."""
+        deadline, ended = time.perf_counter() + seconds, False
         self.session.film.samples = min(self.session.film.samples, self._samples)  # there may be fewer to draw now
-        while not self.finished and (left := deadline - time.perf_counter()) > 0.0:
+        while not (self.finished or ended) and (left := deadline - time.perf_counter()) > 0.0:
             if self.session.film.finished:
-                self._go_on(left)
-            if not self.session.step(left, tile_seconds=0.5 * seconds):
+                self._go_on()
+            ended = not self.session.step(left, tile_seconds=0.5 * seconds)
+            if ended:
                 self._end_film()
         self._stack()
+        return ended
 
     # Films
 
@@ -101,12 +104,12 @@ class ViewportPicture:
         self.session.film.samples = 1
         self.step, self._edges = step, self.view.part(size, border)
 
-    def _go_on(self, seconds):
-        """The film has the samples that it was to have: go on to a finer one, the finest that is there in `seconds`, or
-        to the samples of the whole picture."""
+    def _go_on(self):
+        """The film has the samples that it was to have: go on to a finer one, the finest that is there before the next
+        redraw, or to the samples of the whole picture."""
         if self.step > 1:
             finer = STEPS[: STEPS.index(self.step)]
-            self._start(next((step for step in finer if self._seconds(step) <= seconds), finer[-1]))
+            self._start(next((step for step in finer if self._seconds(step) <= MOST), finer[-1]))
         else:
             self.session.film.samples = self._samples
 

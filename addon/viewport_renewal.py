@@ -32,11 +32,15 @@ class Renewal:
         """Wait until it is prepared, for at most `seconds`; whether it is."""
         return self._job.wait(seconds)
 
-    def upload(self, seconds):
-        """Bring it to the GPU for about `seconds`; the `Update` once all of it is there, else None. Raises what
-        preparing it has raised."""
+    @property
+    def update(self):
+        """The `Update`, once it is prepared. Raises what preparing it has raised."""
         self._update = self._update or self._job.result()
-        return self._update if self._loaded.apply(self._update, seconds) else None
+        return self._update
+
+    def upload(self, seconds):
+        """Bring it to the GPU for about `seconds`; the `Update` once all of it is there, else None."""
+        return self.update if self._loaded.apply(self.update, seconds) else None
 
     def stop(self):
         """Nobody wants it any more: have the other thread end soon."""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scenes that 3D viewports show. Viewports that show the same objects share one: it is read once, and is on the GPU
-once. It is freed with the last of them."""
+once. It is freed some time after the last of them."""
 
 import traceback
 import weakref
@@ -8,7 +8,7 @@ from functools import partial
 
 import bpy
 
-from . import viewport_log
+from . import viewport_kept, viewport_log
 from .engine import LoadedScene
 from .engine.changes import Change
 from .engine.timing import timed
@@ -79,10 +79,21 @@ class ViewportScene:
         self.stale = True
         self.reader.mark(depsgraph)
 
-    def forget(self):
-        """Nothing that was read before can be trusted."""
+    def attach(self, session):
+        """A viewport's session shows it from now on. Nobody said what has changed while no viewport did."""
+        if not self.sessions:
+            self._distrust()
+        self.sessions.add(session)
+        viewport_kept.keep(self)
+
+    def _distrust(self):
+        """Read all of it anew. What comes out equal is not loaded again."""
         self.stale = True
         self.reader.forget()
+
+    def forget(self):
+        """Nothing that was read before can be trusted, nor what is made of it."""
+        self._distrust()
         for renewal in filter(None, (self._renewal, self._better)):
             renewal.stop()
 
@@ -93,7 +104,7 @@ class ViewportScene:
         try:
             if self._renewal and self._renewal.stopped and self._renewal.wait(0.0):
                 self._drop_renewal()
-            if self._better and (self._better.stopped or (self.stale and not self._better.preparing)):
+            if self._better and self._better.stopped:
                 self._drop_better()
             if self.stale and not self._renewal:
                 self._renewal = self._read(depsgraph, view, space)
@@ -135,20 +146,23 @@ class ViewportScene:
         return Renewal(self.loaded, partial(self.loaded.prepare, scene, settings, True), statistics)
 
     def _upload(self, seconds):
-        """Bring what was prepared to the GPU, or a part of it."""
+        """Bring what was prepared to the GPU, or a part of it. Good trees are those of what is drawn now; while they
+        are being built, the work is not lost where they stay."""
+        update = self._renewal.update
+        if update.change and self._better and not (self._better.preparing and update.leaves_trees):
+            self._drop_better()
         if update := self._renewal.upload(0.5 * seconds):
             statistics, self._renewal = self._renewal.statistics, None
-            self._drop_better()
             self._log(update, {"read": statistics.seconds["read"]})
             if update.change & Change.FILM:
                 self.statistics = statistics
-            self.tag_redraw()  # viewports that have drawn already too
 
     def _upload_better(self, seconds):
-        if update := self._better.upload(0.5 * seconds):
+        if self._better.update.before is not self.loaded.drawn:  # what is drawn is not what these were prepared for
+            self._drop_better()
+        elif update := self._better.upload(0.5 * seconds):
             self._better = None
             self._log(update, {})
-            self.tag_redraw()
 
     @staticmethod
     def _log(update, spent):
@@ -190,14 +204,17 @@ def explain(error, report):
 
 def scene_of(space, depsgraph, before=None):
     """The `ViewportScene` that a 3D viewport (None outside of a window) shows of a depsgraph. `before`: the one that it
-    has shown up to now; where nobody else shows that, it becomes the new one: most of it may be the same."""
+    has shown up to now. One that nobody else shows becomes the new one: most of it may be the same."""
     key = _key(space, depsgraph)
     if before is not None and before.key == key:
         return before
     scene = _scenes.get(key)
-    if scene is None and before is not None and before.key[0] == key[0] and len(before.sessions) == 1:
-        scene = _scenes.pop(before.key)
-        scene.stale = True
+    if scene is None:
+        alone = (each for each in list(_scenes.values()) if len(each.sessions) == (each is before))
+        scene = next((each for each in alone if each.key[0] == key[0]), None)
+        if scene is not None:
+            del _scenes[scene.key]
+            scene.stale = True
     scene = scene or ViewportScene()
     _scenes[key], scene.key = scene, key
     return scene
@@ -254,9 +271,16 @@ def _look():
 
 @bpy.app.handlers.persistent
 def _begin_replacing(*_arguments):
-    """Undo, redo and opening a file replace any data."""
+    """Undo and redo replace any data."""
     global _replacing
     _replacing = True
+
+
+@bpy.app.handlers.persistent
+def _begin_loading(*_arguments):
+    """Opening a file: nothing of this one comes back."""
+    viewport_kept.let_go()
+    _begin_replacing()
 
 
 @bpy.app.handlers.persistent
@@ -270,8 +294,9 @@ def _end_replacing(*_arguments):
 
 def _handlers():
     """(list of Blender's, function) of each handler."""
-    for name in ("undo_pre", "redo_pre", "load_pre"):
+    for name in ("undo_pre", "redo_pre"):
         yield getattr(bpy.app.handlers, name), _begin_replacing
+    yield bpy.app.handlers.load_pre, _begin_loading
     for name in ("undo_post", "redo_post", "load_post", "load_post_fail"):
         yield getattr(bpy.app.handlers, name), _end_replacing
 
@@ -281,10 +306,12 @@ def register():
     _replacing = False  # where factory settings disabled the add-on, nobody has told it of the end
     for handlers, function in _handlers():
         handlers.append(function)
+    viewport_kept.register()
 
 
 def unregister():
     for handlers, function in _handlers():
         handlers.remove(function)
+    viewport_kept.unregister()
     if bpy.app.timers.is_registered(_look):
         bpy.app.timers.unregister(_look)

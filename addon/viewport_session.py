@@ -5,7 +5,9 @@ its end."""
 import time
 import weakref
 
-from . import viewport_log
+import bpy
+
+from . import viewport_log, viewport_tracing
 from .engine import Session
 from .log_reporter import LogReporter
 from .statistics import primitives_text, publish
@@ -30,6 +32,10 @@ class ViewportSession:
         self.picture = None  # the `ViewportPicture` of what is loaded
         self.version = None  # of what is loaded, in the picture
         self.error = ""
+        self.paused = False
+        self._tracing = False  # whether there is something left for `trace`
+        self._failure = ""  # why tracing between redraws failed, until the next redraw tells
+        self._frame = 0.0  # seconds that a redraw may take while something happens
 
     @property
     def waiting(self):
@@ -38,39 +44,66 @@ class ViewportSession:
 
     def tag_redraw(self):
         """Have this viewport redrawn, from anywhere in the main thread."""
-        engine, self._asked = self._engine(), True
+        engine = self._engine()
         if engine is not None:
             engine.tag_redraw()
 
     def draw(self, context, depsgraph):
-        """Draw into the bound frame buffer, and ask for another redraw while there is more to do."""
-        started, self._asked = time.perf_counter(), False
+        """Draw into the bound frame buffer, and see to it that what is left to do is done: by `trace`, or by another
+        redraw."""
+        started = time.perf_counter()
         self.pace.begin()
         settings = depsgraph.scene.conic
+        self.paused, failure, self._failure = settings.preview_pause, self._failure, ""
+        self._tracing = False
         try:
             self._attach(context.space_data, depsgraph)
-            frame = settings.preview_frame_seconds / (1 + self._others())
+            self._frame = settings.preview_frame_seconds / (1 + self._others())
             view = view_of(context, depsgraph, self._engine().get_preview_pixel_size(depsgraph.scene))
-            if not settings.preview_pause:
-                self._renew(depsgraph, view, context.space_data, frame)
-            self.error = self.scene.error
-            if self.scene.ready and not view.is_empty:
-                began = self._show(view, frame, started, settings.preview_pause)
+            if not self.paused:
+                self._renew(depsgraph, view, context.space_data)
+            self.error = failure or self.scene.error
+            if self.scene.ready and not view.is_empty and not failure:
+                began = self._show(view, started)
                 self._log(began, time.perf_counter() - started)
         except Exception as error:  # a view that raises would do so at every redraw
-            self.error = explain(error, self.scene.report if self.scene else LogReporter())
-            self.picture = None  # it may have ended half way: the next redraw begins anew
-        self._tell(settings.preview_pause, time.perf_counter() - started)
-        self.pace.end(self._asked)
+            self._fail(error)
+        self._tell(time.perf_counter() - started)
+        self.pace.end(self._tracing)
 
-    def _renew(self, depsgraph, view, space, frame):
+    def trace(self):
+        """Go on with the picture between redraws, until there is something to see: a redraw is asked for then. Whether
+        there is more to trace before. Call it in the main thread, where the GPU context is active."""
+        if not self._tracing or self.version != self.scene.loaded.version:
+            return False  # nothing is left, or a redraw will follow
+        self.pace.go_on()
+        try:
+            finer = self.picture.advance(self.pace.seconds(self._frame))
+        except Exception as error:
+            self._fail(error)
+            self._failure, finer = self.error, True
+        if finer or self.pace.is_due(self._frame):
+            self.pace.ask()
+            self.tag_redraw()
+            return False
+        return True
+
+    def _fail(self, error):
+        """What was drawn has ended half way: the next redraw begins anew."""
+        self.error = explain(error, self.scene.report if self.scene else LogReporter())
+        self.picture, self._tracing = None, False
+
+    def _renew(self, depsgraph, view, space):
         """Bring the scene nearer to Blender's data. Without a picture nobody waits for another redraw."""
         if not self.scene.settled:
             self.pace.changed()
-        seconds = self.pace.seconds(frame) if self.scene.ready else MOST
+        seconds, before = self.pace.seconds(self._frame) if self.picture else MOST, self.scene.loaded.drawn
         self.scene.renew(depsgraph, view, space, seconds, max(0.5 * seconds, self.pace.overhead))
         if self.scene.prepared:
             self.tag_redraw()
+        if self.scene.loaded.drawn is not before:
+            for other in self.scene.sessions - {self}:  # they may have been redrawn already
+                other.tag_redraw()
 
     def _others(self):
         """How many other viewports of the scene have pictures that form, and share the time of a frame."""
@@ -84,11 +117,11 @@ class ViewportSession:
             if self.scene:
                 self.scene.sessions.discard(self)
             self.scene, self.picture, self.version = scene, None, None
-            scene.sessions.add(self)
+            scene.attach(self)
 
-    def _show(self, view, frame, started, paused):
-        """Trace, and show what is there; whether the picture has begun anew. `frame`: what a redraw may take while
-        something happens; `started`: when this one has."""
+    def _show(self, view, started):
+        """Show what is there, of a new view what can be traced at once; whether the picture has begun anew. `started`:
+        when this redraw has."""
         loaded = self.scene.loaded
         if self.picture is None:
             self.picture = ViewportPicture(Session(self.scene.device, loaded))
@@ -97,18 +130,17 @@ class ViewportSession:
         began = not same_scene or picture.view is None or picture.view.key != view.key
         if began:
             self.pace.changed()
-        seconds = self.pace.seconds(frame)
-        seconds = max(_TRACING * seconds - (time.perf_counter() - started), _LEAST * seconds)
-        if began:
             self.version = loaded.version
-            picture.begin(view, seconds, same_scene)
+            spent = time.perf_counter() - started
+            picture.begin(view, max(_TRACING * self._frame - spent, _LEAST * self._frame), same_scene)
             self._publish()
-        elif not paused:
-            picture.advance(seconds)
+        elif bpy.app.background and not self.paused:
+            picture.advance(self._frame)
         self.display.draw(picture.layers, view)
-        if not picture.finished and not paused:
-            self.tag_redraw()
-        if picture.sample and not paused:
+        self._tracing = not (picture.finished or self.paused)
+        if self._tracing:
+            viewport_tracing.go_on(self, quiet=began)
+        if picture.sample and not self.paused:
             self.scene.improve(view)
         return began
 
@@ -127,12 +159,12 @@ class ViewportSession:
             statistics.add_session(self.picture.session.statistics())
             publish(statistics)
 
-    def _tell(self, paused, seconds):
+    def _tell(self, seconds):
         """Show in the viewport how far it is, and that there is something to read in the console."""
-        text = self.error or " | ".join(self._state(paused, seconds))
+        text = self.error or " | ".join(self._state(seconds))
         self._engine().update_stats("Conic", text)
 
-    def _state(self, paused, seconds):
+    def _state(self, seconds):
         """How far it is, in some words each."""
         report = self.scene.report
         if self.picture:
@@ -142,7 +174,7 @@ class ViewportSession:
             yield f"Sample {min(self.picture.sample + 1, drawn.settings.samples)}/{drawn.settings.samples}"
             yield primitives_text(drawn.packed.statistics["primitives"])
             yield f"{1000.0 * seconds:.0f} ms"
-        if paused:
+        if self.paused:
             yield "Paused"
         elif not self.scene.settled:
             yield "Loading"

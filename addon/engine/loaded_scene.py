@@ -61,6 +61,12 @@ class Update:
         """Whether all that differs are better trees: of the same picture."""
         return bool(self.change & Change.TREES) and not self.change & Change.FILM
 
+    @property
+    def leaves_trees(self):
+        """Whether the trees that were built quickly are those of the scene before: good ones of them are of use yet."""
+        ours, its = self.packed.residency.quick, self.before.packed.residency.quick if self.before else []
+        return list(map(id, ours)) == list(map(id, its))
+
 
 @dataclass(eq=False)
 class DrawnScene:
@@ -179,7 +185,7 @@ class LoadedScene:
         digest = world_digest(packed) if settings.world_light != "NONE" else b""
         return Update(
             before=before,
-            scene=scene if packed.residency.is_quick else None,
+            scene=scene if packed.residency.quick else None,
             packed=packed,
             settings=settings,
             camera=scene.camera,
@@ -223,6 +229,9 @@ class LoadedScene:
         """
         if update.before is not self.drawn:
             raise RuntimeError("an update to a scene was prepared before another one was applied")
+        if not update.change:  # what is drawn stays, and an update to it that is being prepared can follow
+            self.drawn.settings, self.warnings, self.seconds = update.settings, update.warnings, update.seconds
+            return True
         deadline = np.inf if seconds is None else time.perf_counter() + seconds
         update.job = update.job or self._apply(update, in_pieces=seconds is not None)
         try:
@@ -273,6 +282,8 @@ class LoadedScene:
                 update.change |= Change.PROGRAM | (Change.NONE if update.improves else Change.FILM)
                 yield
                 drawn.draw_outside(self.device)  # drivers leave much of their work to the first draw
+        if before and before.scene and not update.scene:
+            before.scene.forget_trees()
         self.drawn, update.before, update.made = drawn, drawn, []
         self.warnings, self.seconds = update.warnings, update.seconds
         self.version += bool(update.change & Change.FILM)

@@ -315,7 +315,7 @@ class _Packer:
         """References that can wait in a traversal, rounded up so that few programs are made; as before, if that is not
         much too large. Good trees are often a little deeper than quick ones, and those much deeper where shapes crowd.
         """
-        size = -(-(needed + _DEEPER * self.residency.is_quick) // 8) * 8
+        size = -(-(needed + _DEEPER * bool(self.residency.quick)) // 8) * 8
         if not needed <= self.before.stack_size <= size + 32:
             self.residency.stack_size = size
         return self.residency.stack_size

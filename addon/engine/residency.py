@@ -130,9 +130,9 @@ class Residency:
         return new
 
     @property
-    def is_quick(self):
-        """Whether a tree was built quickly, for the time being."""
-        return any(resident.quick for resident in (*self.geometries.values(), self.instances) if resident)
+    def quick(self):
+        """The `Resident`s and `ResidentInstances` whose trees were built quickly, for the time being."""
+        return [resident for resident in (*self.geometries.values(), self.instances) if resident and resident.quick]
 
     @property
     def numbers(self):

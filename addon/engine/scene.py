@@ -72,12 +72,13 @@ class Geometry:
 
     Its primitives' `material` is a slot: an index into the `materials` of the instance. `replaces`: None, or a weak
     reference to the Geometry of an earlier scene that has as many primitives of each kind, in the same order. `token`:
-    another object whenever something is added.
+    another object whenever something is added. `tree`: None, or (token, what it was moved by, a good tree) where one is
+    on its way to take the place of one that was built quickly: seconds of work for what may be overtaken by an edit.
     """
 
     def __init__(self, *primitives, name=""):
         self.name = name
-        self.replaces = self._joined = self._slots = None
+        self.replaces = self.tree = self._joined = self._slots = None
         self.token = _Token()
         self._parts = {cls: [] for cls in BY_KIND}
         for part in primitives:
@@ -181,6 +182,11 @@ class Scene:
     instances: list = field(default_factory=list)
     planes: list = field(default_factory=list)
     outline_attribute: str = ""
+
+    def forget_trees(self):
+        """Good trees have taken the place of those that were built quickly."""
+        for geometry in (self.shapes, *(placed.geometry for placed in self.instances)):
+            geometry.tree = None
 
     def add_material(self, material):
         """Append a material; its index."""

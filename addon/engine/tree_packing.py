@@ -86,7 +86,7 @@ class TreePacker:
             quick = replaced.quick
         if tree is None:
             quick = self.quick and self.plan.counts[number].sum() >= QUICK_FROM
-            tree, kept, cost = self._built(number, geometry.name, parts, move, quick)
+            tree, kept, cost = self._built(number, parts, move, quick)
         with timed(self.seconds, "records"):
             for label, part, order in rows_by_kind(tree, parts):
                 attributes.write((number, label), part, order)
@@ -157,23 +157,35 @@ class TreePacker:
                 part = dict(self.plan.geometries[number].kinds())[label]
                 attributes.write((number, label), part, order[start : start + count] - start)
 
-    def _built(self, number, name, parts, move, quick):
+    def _built(self, number, parts, move, quick):
         """Build a tree and write the records of its primitives; (tree, what is kept of it, its cost or 0)."""
-        with timed(self.seconds, "bounds"):
-            lower, upper = _bounds(parts.values(), move)
-            labels = np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])
+        geometry, moved = self.plan.geometries[number], self.moved(number)
+        token, of, tree = geometry.tree or (None, None, None)
+        if token is not geometry.token or of != moved:
+            tree = self._built_anew(geometry.name, parts, move, quick)
+            if self._improves(number):
+                geometry.tree = geometry.token, moved, tree
         with timed(self.seconds, "tree"):
-            with _naming(name):
-                if quick:
-                    tree = bvh.quick_build(lower, upper, labels, leaf_size=_LEAF_SIZE)
-                else:
-                    tree = bvh.build(lower, upper, labels, leaf_size=_LEAF_SIZE, intersection_cost=_INTERSECTION_COST)
-            del lower, upper, labels
             cost = _cost(tree)
         with timed(self.seconds, "records"):
             for label, part, order in rows_by_kind(tree, parts):
                 self._write_records(number, label, part, order, move)
         return tree, KeptTree(bvh.Form(tree), cost) if self.keep else None, cost
+
+    def _built_anew(self, name, parts, move, quick):
+        with timed(self.seconds, "bounds"):
+            lower, upper = _bounds(parts.values(), move)
+            labels = np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])
+        with timed(self.seconds, "tree"), _naming(name):
+            if quick:
+                return bvh.quick_build(lower, upper, labels, leaf_size=_LEAF_SIZE)
+            return bvh.build(lower, upper, labels, leaf_size=_LEAF_SIZE, intersection_cost=_INTERSECTION_COST)
+
+    def _improves(self, number):
+        """Whether the good tree of a geometry takes the place of its quick one."""
+        there = self.residency.geometries.get(number)
+        there = there is not None and there.quick and there.is_of(self.plan.geometries[number], self.moved(number))
+        return there and not self.quick
 
     def _write_records(self, number, label, part, order, move):
         """Write the records of the rows `order` of a part of a geometry, or of what is joined to it."""

@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pytest
 
-from tests.app.viewport_scene import BLUE, RED, assert_only_turned, ball, changes, far, log, middle, region
+from tests.app.viewport_scene import BLUE, RED, assert_only_turned, ball, changes, far, log, middle, region, scenes
 
 pytestmark = pytest.mark.skipif(
     not (shutil.which("Xvfb") and shutil.which("xdotool")), reason="Xvfb or xdotool is not installed"
@@ -53,6 +53,28 @@ def test_a_second_viewport(rested):
     assert rested.run(counts) == [1, 1]
 
 
+def test_solid_and_back(rested):
+    before = rested.picture()
+    rested.run("view().shading.type = 'SOLID'")
+    rested.rest(0.5)
+    assert rested.run("result = [len(s.sessions) for s in viewport_scenes._scenes.values()]") == [0]
+    rested.run("records.clear(); view().shading.type = 'RENDERED'")
+    rested.rest()
+    found = log(rested)
+    assert found["began"] and not changes(found), "nothing is loaded again"
+    x, y, width, height = region(rested)
+    assert np.abs(before - rested.picture("back"))[y : y + height, x : x + width].mean() < 0.002
+    rested.run("view().shading.type = 'SOLID'")
+    rested.rest(0.5)
+    rested.run("bpy.data.objects['blue'].location.z = 2.0")
+    rested.rest(0.5)
+    rested.run("view().shading.type = 'RENDERED'")
+    rested.rest()
+    assert far(ball(before, BLUE), ball(rested.picture("back, moved"), BLUE)) > 10
+    rested.run("bpy.data.objects['blue'].location.z = 0.0")
+    rested.rest()
+
+
 # Renders, engines, files
 
 
@@ -89,6 +111,7 @@ def test_another_engine_and_back(rested, engine):
     rested.run("bpy.context.scene.render.engine = engine", engine=engine)
     rested.rest()
     rested.picture(engine.lower())
+    rested.rest(1.5)
     assert rested.run("result = len(viewport_scenes._scenes)") == 0
     rested.run("bpy.context.scene.render.engine = 'CONIC'")
     rested.rest()
@@ -121,7 +144,7 @@ def test_opening_a_file(rested, tmp_path):
     moved = ball(rested.picture(), BLUE)
     rested.run("bpy.ops.wm.open_mainfile(filepath=path)", path=str(tmp_path / "scene.blend"))
     rested.rest()
-    assert rested.run("result = len(viewport_scenes._scenes)") == 0, "Blender opens files in the solid view"
+    assert scenes(rested) == 0, "Blender opens files in the solid view"
     rested.run("view().shading.type = 'RENDERED'")
     rested.rest()
     assert far(moved, ball(rested.picture("opened"), BLUE)) > 10

@@ -10,17 +10,16 @@ import gpu
 import numpy as np
 import pytest
 
-from addon import viewport_log, viewport_scenes, viewport_session
-from addon.engine import DeviceError, LoadedScene, SceneError, loaded_scene
+from addon import viewport_kept, viewport_log, viewport_scenes, viewport_session
+from addon.engine import DeviceError, LoadedScene, SceneError, bvh, loaded_scene
 from addon.engine.changes import Change
 from addon.engine.devices.blender_gpu import BlenderDevice
 from addon.engine.packing import pack
 from addon.engine.tree_packing import QUICK_FROM
 from addon.operators.nff_shapes import new_point_cloud
 from addon.sync.scene_reader import SceneReader
-from addon.viewport_pace import MOST, RedrawPace
-from addon.viewport_picture import STEPS
-from tests.blender.viewport_stand_in import HEIGHT, WIDTH, StandIn, draws, loads, mark
+from addon.viewport_picture import STEPS, ViewportPicture
+from tests.blender.viewport_stand_in import HEIGHT, WIDTH, StandIn, draws, loads, mark, records
 
 pytestmark = pytest.mark.skipif(not hasattr(gpu, "init"), reason="no GPU context in the background before Blender 5.2")
 
@@ -471,8 +470,8 @@ def test_what_is_prepared_for_nobody_keeps_nothing_on_the_gpu(view, monkeypatch)
 
 def test_undo_and_new_files_read_anew(view, monkeypatch):
     forgotten = []
-    monkeypatch.setattr(SceneReader, "forget", lambda self: forgotten.append(self))
     view.settle()
+    monkeypatch.setattr(SceneReader, "forget", lambda self: forgotten.append(self))
     for name in ("undo_post", "redo_post", "load_post"):
         for handler in getattr(bpy.app.handlers, name):
             if handler.__module__ == viewport_scenes.__name__:
@@ -621,6 +620,55 @@ def test_an_edit_goes_before_good_trees(view, crowd, monkeypatch):
     assert loads()[-1].change == Change.TREES and not view.session.scene.loaded.can_improve
 
 
+def test_good_trees_are_not_given_up_for_an_edit_that_changes_nothing(view, crowd, monkeypatch):
+    gate, begun, prepare_better = threading.Event(), [], LoadedScene.prepare_better
+
+    def wait(loaded, stopped):
+        begun.append(stopped)
+        assert gate.wait(60.0)
+        return prepare_better(loaded, stopped)
+
+    monkeypatch.setattr(LoadedScene, "prepare_better", wait)
+    while view.redraw() or not draws()[-1].finished:
+        pass
+    bpy.context.scene.conic.preview_samples = 5  # no other picture
+    bpy.context.object.update_tag()
+    while len(records(viewport_log.Load)) < 2 or view.redraw():
+        view.redraw()
+    assert draws()[-1].sample == 5 and draws()[-1].finished
+    gate.set()
+    view.settle()
+    assert len(begun) == 1 and loads()[-1].change == Change.TREES
+
+
+def test_the_work_on_good_trees_outlives_an_edit(view, crowd, monkeypatch):
+    gate, begun, built, build = threading.Event(), threading.Event(), [], bvh.build
+
+    def wait(lower, *arguments, **options):
+        if len(lower) >= QUICK_FROM:
+            built.append(len(lower))
+            begun.set()
+            assert gate.wait(60.0)
+        return build(lower, *arguments, **options)
+
+    monkeypatch.setattr(bvh, "build", wait)
+    while view.redraw() or not draws()[-1].finished:
+        pass
+    assert begun.wait(60.0)
+    bpy.context.object.location.x = 1.0
+    while len(loads()) < 2 or view.redraw():
+        view.redraw()
+    assert loads()[-1].change & Change.FILM
+    gate.set()
+    view.settle()
+    assert len(built) == 1 and [load.change for load in loads()][2:] == [Change.TREES]
+    assert not view.session.scene.loaded.can_improve
+    scene = view.session.scene.reader.read(
+        bpy.context.evaluated_depsgraph_get(), 8, 8, camera=view.session.picture.view.camera
+    )
+    assert not any(geometry.tree for geometry in (scene.shapes, *(placed.geometry for placed in scene.instances)))
+
+
 def test_good_trees_that_cannot_be_built_are_reported_and_not_tried_again(view, crowd, monkeypatch):
     def fail(_loaded, _stopped):
         raise SceneError("no memory")
@@ -630,33 +678,103 @@ def test_good_trees_that_cannot_be_built_are_reported_and_not_tried_again(view, 
     assert "no memory" in view.session.error and draws()[-1].finished and not view.redraw()
 
 
-# How long redraws take
+# Scenes that nobody shows
 
 
-def test_redraws_take_longer_where_nothing_happens_and_blender_takes_its_time(monkeypatch):
-    now = [0.0]
-    monkeypatch.setattr(time, "perf_counter", lambda: now[0])
-    pace, taken = RedrawPace(), []
-    for pause in (0.1,) * 12:
-        pace.begin()
-        taken.append(pace.seconds(0.02))
-        now[0] += taken[-1]
-        pace.end(asked=True)
-        now[0] += pause
-    assert taken[0] == 0.02 and taken == sorted(taken) and taken[-1] == MOST
-    pace.changed()
-    assert pace.seconds(0.02) == 0.02
+@pytest.fixture
+def kept(view, monkeypatch):
+    """viewport_kept as in a window, but that nobody looks."""
+    monkeypatch.setattr(viewport_kept, "keep", lambda scene: viewport_kept._kept.update({scene: time.monotonic()}))
+    yield viewport_kept
+    viewport_kept._kept.clear()
+
+
+def test_who_comes_back_finds_the_scene_and_what_has_changed(kept, view):
+    before = view.settle()
+    loaded = view.session.scene.loaded
+    view.close()
+    again = StandIn()
+    count = len(loads())
+    assert np.array_equal(again.settle(), before) and again.session.scene.loaded is loaded
+    assert len(loads()) == count, "nothing was loaded again"
+    again.close()
+    bpy.app.handlers.depsgraph_update_post.remove(mark)  # no viewport, no `view_update`
+    bpy.context.object.location.x = 1.0
+    bpy.context.view_layer.update()
+    bpy.app.handlers.depsgraph_update_post.append(mark)
+    again = StandIn()
+    assert not np.array_equal(again.settle(), before) and again.session.scene.loaded is loaded
+    again.close()
+
+
+def test_scenes_are_kept_for_a_while(kept, view, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    bpy.context.scene.render.engine = "CONIC"
+    view.redraw()
     now[0] += 100.0
-    for pause in (0.001,) * 3:
-        pace.begin()
-        pace.end(asked=True)
-        now[0] += pause
-    pace.begin()
-    assert pace.seconds(0.02) == 0.02, "fewer redraws would spare nothing"
-    pace.end(asked=False)
-    now[0] += 5.0
-    pace.begin()
-    assert pace.overhead < 0.01, "nobody asked for this one: it was no pause"
+    scene = weakref.ref(view.session.scene)
+    assert kept._look() and len(kept._kept) == 1, "it is shown"
+    view.close()
+    now[0] += 0.9 * kept.SECONDS
+    assert kept._look() and scene()
+    now[0] += 0.2 * kept.SECONDS
+    assert kept._look() is None and not scene()
+
+
+@pytest.mark.parametrize("end", ["render", "load", "another engine"])
+def test_scenes_are_not_kept(kept, view, end):
+    bpy.context.scene.render.engine = "CONIC"
+    view.redraw()
+    scene = weakref.ref(view.session.scene)
+    view.close()
+    if end == "render":
+        kept._before_render()
+    elif end == "load":
+        viewport_scenes._begin_loading()
+        viewport_scenes._end_replacing()
+    else:
+        bpy.context.scene.render.engine = "BLENDER_WORKBENCH"
+    assert kept._look() is None and not scene()
+
+
+# Tracing between redraws
+
+
+def test_a_picture_that_fails_between_redraws_is_reported_once(view, monkeypatch):
+    def fail(*_arguments):
+        raise DeviceError("lost")
+
+    view.settle()
+    view.look_from(1.0)
+    view.redraw()
+    with monkeypatch.context() as patch:
+        patch.setattr(ViewportPicture, "advance", fail)
+        before = view.engine.redraws
+        assert not view.session.trace() and view.engine.redraws == before + 1
+        assert not view.session.trace(), "nothing is left of it"
+    assert not view.redraw() and "lost" in view.engine.text
+    view.settle()
+    assert draws()[-1].finished and "lost" not in view.engine.text
+
+
+def test_a_redraw_is_asked_for_when_there_is_something_to_see(view):
+    """The whole picture first, and the last sample; slices that give neither ask for none until it is time."""
+    bpy.context.scene.conic.preview_samples = 3
+    bpy.context.scene.conic.preview_frame_seconds = 0.001  # the first picture is a coarse one
+    view.settle()
+    view.look_from(1.0)
+    view.redraw()
+    assert draws()[-1].step > 1
+    shown = []
+    while not view.session.picture.finished:
+        before = view.engine.redraws
+        while view.session.trace():
+            assert view.engine.redraws == before
+        assert view.engine.redraws == before + 1
+        shown.append((view.session.picture.step, view.session.picture.sample))
+        view.session.pace.begin()  # the redraw
+    assert shown[-1] == (1, 3) and (1, 1) in shown
 
 
 def test_strands_are_cut_finer_where_the_view_comes_near(view):

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from addon.engine import layout
+from addon.engine import bvh, layout
 from addon.engine.changes import Change
 from addon.engine.errors import SceneError, StoppedError
 from addon.engine.material import surface_image
@@ -133,6 +133,34 @@ def test_quick_trees_stand_until_better_ones_are_asked_for():
     assert better.statistics["bvh"] == pack(scene, LIMIT, keep=True).statistics["bvh"] != quick.statistics["bvh"]
     last = pack(scene, LIMIT, better.residency, keep=True, quick=True)
     assert not last.change & Change.GEOMETRY and "nodes" not in last.uploads
+
+
+def test_a_good_tree_is_built_once_even_if_it_comes_too_late(monkeypatch):
+    """What was packed with it is thrown away: an edit came first, of something else or of the geometry."""
+    built, build = [], bvh.build
+
+    def counted(lower, *arguments, **options):
+        built.extend([1] * (len(lower) >= QUICK_FROM))  # there is a tree of the instances too
+        return build(lower, *arguments, **options)
+
+    monkeypatch.setattr(bvh, "build", counted)
+    large = Geometry(spheres(QUICK_FROM))
+    scene = scene_of()
+    scene.instances = [Instances(large, np.eye(4))]
+    quick = pack(scene, LIMIT, keep=True, quick=True)
+    assert not built and large.tree is None
+    late = pack(scene, LIMIT, quick.residency, keep=True)
+    assert len(built) == 1
+    scene.add_spheres([[0, 0, 5]], 1.0)
+    edited = pack(scene, LIMIT, quick.residency, keep=True, quick=True)
+    better = pack(scene, LIMIT, edited.residency, keep=True)
+    assert len(built) == 1 and better.statistics["bvh"]["sah_cost"] == late.statistics["bvh"]["sah_cost"]
+    assert better.uploads["sphere_surfaces"].count == QUICK_FROM
+    large.add(spheres(10))
+    pack(scene, LIMIT, edited.residency, keep=True)
+    assert len(built) == 2, "it is another geometry now"
+    scene.forget_trees()
+    assert large.tree is None
 
 
 def test_a_quick_tree_of_instances_stands_until_a_better_one_is_asked_for():
