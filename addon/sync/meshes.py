@@ -32,8 +32,8 @@ def read_mesh(mesh, uv_map=None):
 
 @contextmanager
 def whole_mesh(copies):
-    """The evaluated data of `Copies`. Of a mesh in Edit Mode, whose arrays are empty, Blender makes a copy that is whole;
-    it is gone with the context."""
+    """The evaluated data of `Copies`. Of a mesh in Edit Mode, whose arrays are empty, Blender makes a copy that is
+    whole; it is gone with the context."""
     obj, data = copies.obj, copies.data
     if copies.kind != "MESH" or not data.is_editmode or data != obj.data:
         yield data
