@@ -103,7 +103,9 @@ def _without_scale(matrix, name):
     """A camera's matrix (4, 4) float64 with axes of length 1, as Blender takes it."""
     matrix = np.array(matrix, np.float64)
     lengths = np.linalg.norm(matrix[:3, :3], axis=0)
-    if not np.isfinite(matrix).all() or not (lengths > 0.0).all():
+    if not np.isfinite(matrix).all():
+        raise SceneError(f"camera {name!r} is in a place or of a scale that is not finite")
+    if not (lengths > 0.0).all():
         raise SceneError(f"camera {name!r} is scaled to zero; give it a scale")
     matrix[:3, :3] /= lengths
     return matrix

@@ -13,7 +13,7 @@ from .curves import DEFAULT_RADIUS, Read, sampling_of, strands_of_curves, strand
 from .islands import find_islands
 from .keys import data_key, original_key
 from .memory import Memory
-from .meshes import is_closed_mesh, read_mesh, read_triangles
+from .meshes import is_closed_mesh, read_mesh, read_triangles, whole_mesh
 from .particle_hair import strands_of_particles
 from .points import read_points
 from .reports import Reports
@@ -103,6 +103,7 @@ class _Reading:
     def __init__(self, owner, copies, shadings):
         self._owner, self._memory, self._settings = owner, owner.memory, owner.settings
         self._copies, self._obj, self._data = copies, copies.obj, copies.data
+        self._data_key = data_key(copies.data)
         self._shadings, self._slots = shadings, len(shadings)
         self._keys = of_primitives({key for shading in shadings for key in shading.attributes})
         self.tokens = geometry_of(original_key(copies.data)), geometry_of(original_key(copies.obj))
@@ -122,8 +123,9 @@ class _Reading:
             what = _NOT_RENDERED.get(kind, kind.lower())
             self.notes.append(f" is not rendered: it is {what}")
             return ()
-        found = tuple(readers[kind]())
-        constants = of_texture_space(self._data, keys) if found else {}
+        with whole_mesh(self._copies) as self._data:
+            found = tuple(readers[kind]())
+            constants = of_texture_space(self._data, keys) if found else {}
         if kind in _STRANDS:
             constants |= of_strands(keys, is_particle_hair=kind == "HAIR")
         if not constants:
@@ -163,7 +165,7 @@ class _Reading:
             self._memory.depend(*self.tokens)
             return is_closed_mesh(mesh)
 
-        return self._memory.get(("closed", data_key(mesh)), read)
+        return self._memory.get(("closed", self._data_key), read)
 
     def _triangles(self, islands):
         """The Geometry of a mesh, shared by all objects that have the mesh and its uv needs in common."""
@@ -177,10 +179,10 @@ class _Reading:
                 dropped, verb = counted(read.dropped, "triangle"), "is" if read.dropped == 1 else "are"
                 note(f": {dropped} with NaN or infinite vertices {verb} not rendered")
             parts = [*(found.primitives if found else ()), *([read.triangles] if read.triangles is not None else [])]
-            return Geometry(*parts, name=mesh.name) if parts else None
+            return Geometry(*parts, name=self._copies.data.name) if parts else None
 
         smooth_only = islands and self._settings.recognise == "SMOOTH"
-        return self._geometry(("triangles", data_key(mesh), self._slots, maps, self._keys, islands, smooth_only), read)
+        return self._geometry(("triangles", self._data_key, self._slots, maps, self._keys, islands, smooth_only), read)
 
     def _islands(self, mesh):
         values = {key: (read, domain) for key, read, domain in of_elements(mesh, self._keys) if domain != "EDGE"}
@@ -197,7 +199,7 @@ class _Reading:
                 note(f" has {counted(found.without_radius, 'point')} without a radius above 0, not rendered")
             return found.geometry
 
-        return self._once(("points", data_key(cloud), self._slots, self._keys), read, "point cloud")
+        return self._once(("points", self._data_key, self._slots, self._keys), read, "point cloud")
 
     def _curves(self):
         curves, radius = self._data, 1.0
@@ -208,7 +210,7 @@ class _Reading:
         if not radius > 0.0:
             return ()
         return self._strands(
-            (data_key(curves), self._slots, self._keys, radius),
+            (self._data_key, self._slots, self._keys, radius),
             lambda sampling: strands_of_curves(curves, sampling, self._slots, self._keys, radius),
         )
 
@@ -230,7 +232,7 @@ class _Reading:
     def _edges(self):
         mesh, radius = self._data, self._obj.conic.strand_radius
         return self._strands(
-            (data_key(mesh), self._keys, radius), lambda sampling: strands_of_edges(mesh, radius, self._keys)
+            (self._data_key, self._keys, radius), lambda sampling: strands_of_edges(mesh, radius, self._keys)
         )
 
     def _hair(self):

@@ -31,6 +31,10 @@ class Lights:
         if not np.isfinite([*matrix.ravel(), light.energy, *color]).all():
             self._reports.warn(f"light {obj.name!r} has a strength or a place that is not finite and gives no light")
             return
+        watts = light.energy * color  # of a sun for each square metre
+        if (watts <= 0.0).all() and (watts < 0.0).any():
+            self._reports.warn(f"light {obj.name!r} has a negative strength and gives no light")
+            return
         made = _MAKERS[light.type](light, np.asarray(matrix, np.float64), color)
         if made is None:
             self._reports.warn(f"light {obj.name!r} is scaled to zero or has no size and gives no light")

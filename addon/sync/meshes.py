@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Evaluated meshes as arrays, and arrays as triangles. No loop over elements: attributes are read whole."""
 
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +28,20 @@ def read_mesh(mesh, uv_map=None):
         material=np.zeros(faces, np.int32) if slots is None else slots,
         uv=None if uv_map is None else read_uv(mesh, uv_map),
     )
+
+
+@contextmanager
+def whole_mesh(copies):
+    """The evaluated data of `Copies`. Of a mesh in Edit Mode, whose arrays are empty, Blender makes a copy that is
+    whole; it is gone with the context."""
+    obj, data = copies.obj, copies.data
+    if copies.kind != "MESH" or not data.is_editmode or data != obj.data:
+        yield data
+        return
+    try:
+        yield obj.to_mesh()
+    finally:
+        obj.to_mesh_clear()
 
 
 def read_uv(mesh, name=""):

@@ -14,6 +14,7 @@ from .contents import Contents
 from .geometry_sets import components_of, geometry_set_of
 from .instancing import Copies
 from .memory import Memory
+from .meshes import whole_mesh
 from .pixel_sizes import PixelSizes
 from .raw_attributes import values_of
 from .reports import Reports
@@ -53,7 +54,12 @@ def _own(obj, depsgraph):
 
 
 def _own_mesh(obj, depsgraph):
-    mesh, primitive = obj.data, obj.conic.primitive
+    with whole_mesh(Copies(obj, "MESH", obj.data, _matrix(obj))) as mesh:
+        return _mesh(obj, mesh, depsgraph)
+
+
+def _mesh(obj, mesh, depsgraph):
+    primitive = obj.conic.primitive
     if not len(mesh.polygons) and primitive != "PLANE":
         if len(mesh.edges) and obj.conic.strand_radius > 0.0:
             return _strands(Copies(obj, "MESH", mesh, _matrix(obj)), depsgraph)

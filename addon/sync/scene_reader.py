@@ -24,6 +24,8 @@ from .visibility import shown_in
 from .world import read_world
 from .world_light import with_light
 
+_PASSES_MADE = {"combined", "grease_pencil", "cryptomatte_accurate"}  # the last is a setting, on by default
+
 
 @dataclass
 class SyncStatistics:
@@ -87,6 +89,8 @@ class SceneReader:
             self._begin(depsgraph, copies, reports)
             if depsgraph.scene_eval.render.use_motion_blur:
                 reports.warn("motion blur is not rendered")
+            if depsgraph.mode == "RENDER" and (passes := _passes_of(depsgraph.view_layer)):
+                reports.warn(f"view layer {depsgraph.view_layer.name!r}: not rendered as passes: {', '.join(passes)}")
             scene = Scene(camera=camera, outline_attribute=outline_attribute(depsgraph.scene_eval))
             memory = self._memory
             images = Images(depsgraph.scene_eval.frame_current, memory, self._images)
@@ -166,6 +170,14 @@ def _settle_replacements(scene):
         if replaced in taken:
             geometry.replaces = None
         taken.add(replaced)
+
+
+def _passes_of(view_layer):
+    """The names of the passes that a view layer asks for, as its panel has them, and its own outputs (AOVs), but for
+    Combined and what Blender adds by itself."""
+    names = [name for name in view_layer.bl_rna.properties.keys() if name.startswith("use_pass_")]
+    names = [name for name in names if name.removeprefix("use_pass_") not in _PASSES_MADE and getattr(view_layer, name)]
+    return [view_layer.bl_rna.properties[name].name for name in names] + [aov.name for aov in view_layer.aovs]
 
 
 def outline_attribute(scene):

@@ -231,7 +231,8 @@ def collection(edits):
     if known is None or edits.random.random() < 0.3:
         known = bpy.data.collections.new(edits.name("Collection"))
         bpy.context.scene.collection.children.link(known)
-    obj = edits.object()
+    # Blender refuses an instance of a collection in that collection.
+    obj = edits.one(obj for obj in bpy.context.scene.objects if not obj.instance_collection)
     if obj:
         (known.objects.unlink if obj.name in known.objects else known.objects.link)(obj)
         if not obj.users_collection:

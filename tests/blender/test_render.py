@@ -205,6 +205,19 @@ def test_animation_renders_each_frame_and_warns_once(scene, tmp_path, watch):
     assert [level for level, message in told if "motion blur" in message] == ["WARNING"]
 
 
+def test_passes_that_are_not_rendered_are_named(scene, tmp_path, watch):
+    told = []
+    watch(report=lambda level, message: told.append((*level, message)))
+    scene.render.filepath = str(tmp_path / "picture")
+    bpy.ops.render.render(write_still=True)
+    assert not told
+    layer = bpy.context.view_layer
+    layer.use_pass_normal, layer.aovs.add().name = True, "mine"
+    bpy.ops.render.render(write_still=True)
+    ((level, message),) = told
+    assert level == "WARNING" and repr(layer.name) in message and message.endswith(": Normal, mine")
+
+
 class Watched:
     """A RenderEngine some of whose methods are replaced: Blender's own come before those that a class is given."""
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from mathutils import Euler, Matrix, Vector
 
+from addon.engine.errors import SceneError
 from addon.engine.scene import LightKind
 from addon.sync.camera import camera_of_view
 from addon.sync.scene_sync import sync_settings
@@ -88,6 +89,25 @@ def test_a_light_that_is_scaled_to_zero_is_named(kind):
     link(bpy.data.lights.new("flat", kind), "flat", scale=(0.0, 0.0, 0.0))
     synced = sync()
     assert synced.warnings("'flat'", "gives no light") and not synced.scene.lights
+
+
+@pytest.mark.parametrize("kind", ("POINT", "SUN", "SPOT", "AREA"))
+def test_a_negative_light_is_named(kind):
+    add_camera()
+    lamp = link(bpy.data.lights.new("dark", kind), "dark")
+    for energy, warned in ((-100.0, True), (0.0, False)):
+        lamp.data.energy = energy
+        synced = sync()
+        assert bool(synced.warnings("'dark'", "negative")) == warned
+        assert not warned or not synced.scene.lights
+
+
+def test_a_camera_in_no_place_is_named():
+    add_camera()
+    bpy.context.scene.camera.location.x = float("nan")
+    bpy.context.view_layer.update()
+    with pytest.raises(SceneError, match="not finite"):
+        sync()
 
 
 @SINCE_4_5

@@ -8,6 +8,7 @@ from mathutils import Euler, Matrix
 from addon.engine.errors import SceneError
 from addon.engine.packing import pack
 from addon.engine.primitives import invertible
+from addon.sync.objects import describe
 from tests.blender.building import add_camera, image, link, material, mesh_of, node, quad, sync, triangles_of
 
 
@@ -37,6 +38,38 @@ def test_modifiers_are_applied():
     bpy.context.object.modifiers.new("more", "SUBSURF").render_levels = 2
     bpy.context.object.modifiers["more"].levels = 2
     assert sync().scene.primitive_counts() == {"triangle": 6 * 16 * 2}
+
+
+@pytest.mark.parametrize("modifier", [None, "SUBSURF", "ARRAY", "DECIMATE"])
+@pytest.mark.parametrize("strand_radius", [0.0, 0.1])
+def test_in_edit_mode_a_mesh_is_what_it_is_after_it(modifier, strand_radius):
+    add_camera()
+    bpy.ops.mesh.primitive_cube_add()
+    cube = bpy.context.object
+    cube.conic.strand_radius = strand_radius
+    if modifier:
+        cube.modifiers.new("more", modifier)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.subdivide()
+    bpy.ops.transform.translate(value=(1.0, 0.0, 0.0))
+    edited = sync()
+    said = describe(cube, bpy.context.evaluated_depsgraph_get())
+    bpy.ops.object.mode_set(mode="OBJECT")
+    left = sync()
+    counts = edited.scene.primitive_counts()
+    assert counts == left.scene.primitive_counts() and counts["triangle"] >= 48
+    assert not edited.messages and said == describe(cube, bpy.context.evaluated_depsgraph_get())
+    for name in ("p0", "p1", "p2"):
+        corners = [getattr(triangles_of(found.scene.instances[-1]), name) for found in (edited, left)]
+        np.testing.assert_allclose(*corners, atol=1e-6)
+
+
+def test_in_edit_mode_a_sphere_is_exact():
+    add_camera()
+    bpy.ops.mesh.primitive_uv_sphere_add(location=(3.0, 0.0, 0.0))
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert sync().scene.primitive_counts() == {"sphere": 1}
 
 
 def test_normals_of_smooth_and_flat_faces():
