@@ -345,7 +345,7 @@ def _source(packed, settings, features):
         "UNENDED_ALPHA": UNENDED_ALPHA,
     }
     programs = (("programs_lib.glsl", packed.programs),)
-    return shader_source.program("trace_frag.glsl", features, constants, _outputs(settings), generated=programs)
+    return shader_source.program("film_frag.glsl", features, constants, _outputs(settings), generated=programs)
 
 
 def _world_features(packed, settings, world_light):

@@ -21,5 +21,5 @@ def test_every_feature_alone_and_left_out(device, features):
     """`device.program` raises where a driver refuses the text."""
     outputs = ("out_color", *(("out_rays", "out_dropped") if "COUNT_RAYS" in features else ()))
     outputs += ("out_guide",) if "HAS_OUTLINES" in features else ()
-    source = shader_source.program("trace_frag.glsl", features, CONSTANTS, outputs, generated=NO_PROGRAMS)
+    source = shader_source.program("film_frag.glsl", features, CONSTANTS, outputs, generated=NO_PROGRAMS)
     assert device.program(source) is not None
