@@ -54,7 +54,7 @@ struct Traced {
 Traced trace_sample()
 {
   float t_max;
-  Ray eye = camera_ray(gl_FragCoord.xy, t_max);
+  Ray eye = camera_ray(PIXEL, t_max);
   Path path = shading_path(eye, t_max, vec3(1.0), 1, medium_outside());
   bool path_ends = false; /* no path goes on when the lights are done */
   Path stack[PATH_STACK_SIZE];

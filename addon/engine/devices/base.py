@@ -15,6 +15,7 @@ class Device(Protocol):
 
     name: str  #: renderer and driver, for people
     max_texture_size: int  #: texels along one side
+    can_compute: bool  #: whether it takes programs whose source `is_compute`
 
     def texture(self, texels):
         """An RGBA32F data texture from texels (height, width, 4)."""
@@ -51,7 +52,23 @@ class Device(Protocol):
         """Free a texture or target."""
 
 
-#: Data textures by how often rays read them, and how many of a program may be images in every driver.
+#: Pixels of a work group of a compute program, across and up.
+GROUP_SIZE = 8, 8
+
+#: How programs name the pixel that they work on: its centre, from the lower left corner of the target.
+PIXEL = "gl_FragCoord.xy"
+PIXEL_OF_COMPUTE = "(vec2(tile.xy + ivec2(gl_GlobalInvocationID.xy)) + 0.5)"
+
+
+def tile_and_groups(rectangle):
+    """Of a rectangle (x, y, width, height): the uniform `tile` of compute programs, which is first pixel and end, and
+    the numbers of work groups that cover it."""
+    x, y, width, height = rectangle
+    across, up = GROUP_SIZE
+    return (x, y, x + width, y + height), (-(-width // across), -(-height // up))
+
+
+#: Data textures by how often rays read them, and how many images a program may have in every driver.
 _READ_MOST = ("nodes", "spheres", "cylinders", "cones", "discs", "triangles", "instances", "tables")
 _MAX_IMAGES = 8
 
@@ -64,7 +81,8 @@ def loaded_as_images(source, renderer):
     """
     if "llvmpipe" not in renderer:
         return ()
-    return tuple(name for name in _READ_MOST if name in source.textures)[:_MAX_IMAGES]
+    most = _MAX_IMAGES - (len(source.outputs) if source.is_compute else 0)
+    return tuple(name for name in _READ_MOST if name in source.textures)[:most]
 
 
 def texel_readers(source, images):
