@@ -1,5 +1,7 @@
 """Both entries of the path tracer, fragments and compute, over the same scenes: which one is faster on this GPU."""
 
+from addon.engine import entries
+
 from . import results, scenes
 from .measuring import geometric_mean, in_turn
 from .peers import Conic
@@ -23,6 +25,8 @@ def run(arguments):
         raise SystemExit(f"{device.name} has no compute programs")
     rows = {name: measure(name, arguments.size, arguments.samples, arguments.runs) for name in arguments.scenes}
     values = {"size": arguments.size, "samples": arguments.samples, "device": device.name, "scenes": rows}
+    entries.settle(device, "AUTO")
+    values |= {"probe": entries.probe(device)[0], "auto": entries.known(device, "AUTO")}
     return results.save("entries", values, [table(values)])
 
 
@@ -55,5 +59,10 @@ def table(values):
         made.add(name, *rates, f"{row['ratio']:.2f}", *compiling)
     mean = geometric_mean([row["ratio"] for row in values["scenes"].values()])
     made.add("geometric mean", "", "", f"{mean:.2f}", "", "")
-    made.notes += ["A ratio above 1 means that compute is faster.", values["device"]]
+    probe = values["probe"]["FRAGMENT"] / values["probe"]["COMPUTE"]
+    made.notes += [
+        "A ratio above 1 means that compute is faster.",
+        f"The probe's ratio is {probe:.2f}; AUTO means {values['auto']} here.",
+        values["device"],
+    ]
     return made

@@ -85,6 +85,11 @@ class DrawnScene:
         return _counts(self.settings)
 
     @property
+    def entry(self):
+        """Which entry of the path tracer the program has, FRAGMENT or COMPUTE."""
+        return "COMPUTE" if self.source.is_compute else "FRAGMENT"
+
+    @property
     def outputs(self):
         """What the program writes, an attachment of the film each."""
         return self.source.outputs
@@ -252,6 +257,8 @@ class LoadedScene:
             del upload
         yield
         light = yield from self._world_light(update, new)
+        yield
+        entries.settle(self.device, update.settings.entry)
         yield
         with timed(update.seconds, "compile"):
             source, features, program = self._program(before, packed, update.settings, light)

@@ -185,7 +185,7 @@ class BlenderDevice:
 
     def _add_compute_stage(self, info, source):
         info.define("PIXEL", PIXEL_OF_COMPUTE)
-        info.local_group_size(*GROUP_SIZE)
+        info.local_group_size(GROUP_SIZE, 1, 1)
         info.push_constant("IVEC4", "tile")
         for unit, name in enumerate(source.outputs):
             info.image(unit, "RGBA32F", "FLOAT_2D", f"{name}_image", qualifiers={"READ", "WRITE"})

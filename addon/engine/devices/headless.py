@@ -90,7 +90,7 @@ def _in_context(method):
 
 
 class HeadlessDevice:
-    """`Device` on an OpenGL 3.3 context of its own. Raises DeviceError when there is no driver."""
+    """`Device` on an OpenGL context of its own, 3.3 at least. Raises DeviceError when there is no driver."""
 
     def __init__(self):
         self._programs = {}
@@ -194,8 +194,7 @@ class HeadlessDevice:
         block = f"{source.uniform_struct}layout(std140) uniform frame_block {{ Frame frame; }};\n"
         head = f"{block if source.uniform_struct else ''}{textures}"
         if source.is_compute:
-            across, up = GROUP_SIZE
-            head += f"layout(local_size_x = {across}, local_size_y = {up}) in;\nuniform ivec4 tile;\n"
+            head += f"layout(local_size_x = {GROUP_SIZE}) in;\nuniform ivec4 tile;\n"
             for unit, name in enumerate(written):
                 head += f"layout(rgba32f, binding = {unit}) uniform image2D {name}_image;\n"
             return f"#version 430\n#define PIXEL {PIXEL_OF_COMPUTE}\n{head}#line 1\n"
