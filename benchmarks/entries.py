@@ -61,7 +61,7 @@ def table(values):
     made.add("geometric mean", "", "", f"{mean:.2f}", "", "")
     probe = values["probe"]["FRAGMENT"] / values["probe"]["COMPUTE"]
     made.notes += [
-        "A ratio above 1 means that compute is faster.",
+        "A ratio above 1 means that compute is faster. Compiling: fragments, then compute.",
         f"The probe's ratio is {probe:.2f}; AUTO means {values['auto']} here.",
         values["device"],
     ]
