@@ -223,7 +223,7 @@ class BlenderDevice:
             for name, texture in zip(source.outputs, target.colors, strict=True):
                 shader.image(f"{name}_image", texture)
             shader.uniform_int("tile", tile)
-            self._gpu.compute.dispatch(shader, *groups, 1)
+            self._gpu.compute.dispatch(shader, *groups, 1)  # Blender puts a barrier after it
         finally:
             self._gpu.shader.unbind()
 
