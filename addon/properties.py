@@ -55,6 +55,13 @@ CURVE_SAMPLING = (
 )
 
 
+ENTRIES = (
+    ("AUTO", "Automatic", "The faster kind on this GPU, by a short measurement"),
+    ("FRAGMENT", "Fragment", "Pixels are drawn. Works on every GPU"),
+    ("COMPUTE", "Compute", "Pixels are computed. Faster on GPUs of data centers. Fragment where the GPU cannot do it"),
+)
+
+
 class ConicSceneSettings(FilmProperties, bpy.types.PropertyGroup):
     """`scene.conic`"""
 
@@ -156,6 +163,13 @@ class ConicSceneSettings(FilmProperties, bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
         subtype="FACTOR",
+        update=tag_update,
+    )
+    entry: EnumProperty(
+        name="Shader",
+        description="Kind of shader that traces the rays. The picture is the same",
+        items=ENTRIES,
+        default="AUTO",
         update=tag_update,
     )
     recognise: EnumProperty(

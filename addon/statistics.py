@@ -31,6 +31,7 @@ class Statistics:
 
     source: str  # what made it: Render, Viewport
     device: str = ""
+    entry: str = ""  # of the path tracer: FRAGMENT, COMPUTE
     width: int = 0
     height: int = 0
     samples: int = 0
@@ -54,7 +55,7 @@ class Statistics:
 
     def add_session(self, found):
         """Take over what an engine session says of itself, `Session.statistics()`."""
-        for name in ("device", "primitives", "instances", "geometries"):
+        for name in ("device", "entry", "primitives", "instances", "geometries"):
             setattr(self, name, found[name])
         self.gpu_bytes = found["textures"] | {"film": found["gpu_bytes"] - sum(found["textures"].values())}
         # Its first picture counts from loading; `reach` counts from reading.
@@ -118,7 +119,8 @@ def log_line(statistics):
     if statistics.peak_bytes:
         parts.append(f"{bytes_text(statistics.peak_bytes)} peak")
     parts.append(", ".join(f"{name} {seconds_text(seconds)}" for _, name, seconds in _stages(statistics)))
-    return " | ".join([*parts, statistics.device])
+    shader = [f"{statistics.entry.lower()} shader"] if statistics.entry else []
+    return " | ".join([*parts, *shader, statistics.device])
 
 
 def sections(statistics):
@@ -136,6 +138,7 @@ def sections(statistics):
         ("Size", f"{statistics.width:,} x {statistics.height:,}"),
         ("Samples", f"{statistics.samples:,}"),
         ("Device", statistics.device),
+        ("Shader", statistics.entry.capitalize()),
     ]
     found = [
         (statistics.source, picture),

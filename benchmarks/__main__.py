@@ -11,6 +11,7 @@ RESULTS = {
     "traversal": ("traversal", "eye and shadow rays beside Mitsuba 3 and Embree"),
     "growth": ("growth", "seconds and bytes against the number of primitives"),
     "rays": ("rays", "rays a second by kind, seconds by stage"),
+    "entries": ("entries", "the path tracer as fragments and as a compute program"),
     "compile": ("compiling", "compiling the programs, cold and warm"),
     "tests-a-ray": ("tests_a_ray", "nodes and primitives that a ray tests, beside the SAH cost"),
     "plots": ("plots", "pictures of the results that are there"),

@@ -10,6 +10,7 @@ COMMANDS = (
     ("traversal", "--size", "512", "--runs", "5"),
     ("growth", "--size", "384", "--runs", "3"),
     ("rays", "--size", "256", "--runs", "3"),
+    ("entries", "--size", "256", "--runs", "3", "--scenes", "balls", "lattice", "shells", "mount", "crystal", "teapot"),
     ("compile", "--runs", "3"),
     ("first-picture", "--runs", "3"),
     ("cycles", "--size", "128", "--runs", "2", "--limit", "64"),

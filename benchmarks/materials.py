@@ -103,7 +103,7 @@ def measure(name):
     loaded()
     row = {
         "programs": programs,
-        "lines": source.fragment.count("\n"),
+        "lines": source.text.count("\n"),
         "compile": seconds["compile"],
         "draw": seconds["trace"],
         "changed": int(session.loaded.drawn.source != source),

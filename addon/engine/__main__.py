@@ -16,6 +16,7 @@ import time
 from contextlib import ExitStack
 from dataclasses import replace
 
+from .entries import ENTRIES
 from .errors import ConicError
 from .film_options import LARGEST_LINE, DepthCue, Outlines
 from .image_file import check_suffix, write_image
@@ -89,6 +90,11 @@ def _parse(arguments):
         "--depth-cue", nargs="?", type=strength, const=0.8, metavar="S", help="fade the share S of the farthest (0.8)"
     )
     parser.add_argument("--flat-colors", action="store_true", help="no shading: surfaces as the file colours them")
+    parser.add_argument(
+        "--entry",
+        choices=[name.lower() for name in ENTRIES],
+        help="kind of shader that traces (auto: the faster one)",
+    )
     parser.add_argument("--stats", metavar="FILE.json", help="write ray counts, times and sizes")
     options = parser.parse_args(arguments)
     if options.strict and (options.samples or 1) > 1:
@@ -152,7 +158,8 @@ def _check_outputs(options):
 def _settings(options):
     from .settings import Settings
 
-    given = {"samples": options.samples, "max_depth": options.depth}
+    entry = options.entry and options.entry.upper()
+    given = {"samples": options.samples, "max_depth": options.depth, "entry": entry}
     given = {name: value for name, value in given.items() if value is not None}
     settings = Settings.strict() if options.strict else Settings()
     return replace(

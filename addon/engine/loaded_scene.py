@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import depth_cue, layout, shader_source
+from . import depth_cue, entries, layout, shader_source
 from .changes import Change
-from .errors import SceneError
+from .errors import DeviceError, SceneError
 from .film import UNENDED_ALPHA
 from .new_textures import NewTextures
 from .packed_scene import PackedScene, table_changes
@@ -91,6 +91,11 @@ class DrawnScene:
         return _counts(self.settings)
 
     @property
+    def entry(self):
+        """Which entry of the path tracer the program has, FRAGMENT or COMPUTE."""
+        return "COMPUTE" if self.source.is_compute else "FRAGMENT"
+
+    @property
     def outputs(self):
         """What the program writes, an attachment of the film each."""
         return self.source.outputs
@@ -129,8 +134,9 @@ class DrawnScene:
         device.draw(self.program, target, rectangle, self.textures, frame_record(values))
 
     def draw_outside(self, device):
-        """Draw one pixel of a target that is thrown away."""
-        scratch = device.target(1, 1, len(self.outputs))
+        """Draw one pixel of a target that is thrown away, and whose sides, as most do, are no powers of two: Mesa's
+        software rasteriser compiles compute programs anew where these are."""
+        scratch = device.target(3, 3, len(self.outputs))
         self.draw(device, scratch, (0, 0, 1, 1), self.frame_values(self.camera))
         device.read(scratch, 0, (0, 0, 1, 1))
         device.release(scratch)
@@ -211,14 +217,14 @@ class LoadedScene:
     def _source(self, before, packed, settings, world_light):
         """(Source, features) of the program: the one that is there if it can draw things that the scene has no more,
         for compiling takes seconds; else the one that has no more than it needs."""
-        features = _features(packed, settings, world_light)
+        features, entry = _features(packed, settings, world_light), entries.known(self.device, settings.entry)
         if self.lasting and before:
             spare = (before.features - features) & _SPARE_FEATURES
             if spare and not features & _ASK_FOR_INSTANCES:
-                source = _source(packed, settings, features | spare)
+                source = _source(packed, settings, features | spare, entry)
                 if source == before.source:
                     return source, features | spare
-        return _source(packed, settings, features), features
+        return _source(packed, settings, features, entry), features
 
     # The GPU's part
 
@@ -261,9 +267,10 @@ class LoadedScene:
         yield
         light = yield from self._world_light(update, new)
         yield
+        entries.settle(self.device, update.settings.entry)
+        yield
         with timed(update.seconds, "compile"):
-            source, features = self._source(before, packed, update.settings, light)
-            program = self.device.program(source)
+            source, features, program = self._program(before, packed, update.settings, light)
             new.complete(source.textures)
             drawn = DrawnScene(
                 scene=update.scene,
@@ -291,6 +298,18 @@ class LoadedScene:
             textures, before.textures, before.program = before.textures, {}, None
             kept = set(map(id, drawn.textures.values()))
             self._release([texture for texture in textures.values() if id(texture) not in kept])
+
+    def _program(self, *arguments):
+        """(Source, features, program) of the arguments of `_source`; fragments where compute programs are refused."""
+        source, features = self._source(*arguments)
+        try:
+            return source, features, self.device.program(source)
+        except DeviceError:
+            if not source.is_compute:
+                raise
+        entries.refuse(self.device)
+        source, features = self._source(*arguments)
+        return source, features, self.device.program(source)
 
     def _world_light(self, update, new):
         """Make the `WorldLight` of an update, step by step; its texture is uploaded where samples need it."""
@@ -348,7 +367,7 @@ def _features(packed, settings, world_light):
     return frozenset(features | ({"COUNT_RAYS"} if _counts(settings) else set()))
 
 
-def _source(packed, settings, features):
+def _source(packed, settings, features, entry):
     """The source of the program that has these features."""
     constants = packed.constants | {
         "PATH_STACK_SIZE": settings.stack_size,
@@ -356,7 +375,7 @@ def _source(packed, settings, features):
         "UNENDED_ALPHA": UNENDED_ALPHA,
     }
     programs = (("programs_lib.glsl", packed.programs),)
-    return shader_source.program("trace_frag.glsl", features, constants, _outputs(settings), generated=programs)
+    return shader_source.program(entries.FILES[entry], features, constants, _outputs(settings), generated=programs)
 
 
 def _world_features(packed, settings, world_light):

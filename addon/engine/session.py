@@ -148,7 +148,8 @@ class Session:
         different geometries. bvh: nodes of all trees, depth of the deepest path, sah_cost of the largest tree.
         seconds: build (trees and records), upload, compile, trace; first_picture: from the start of loading until each
         pixel had a sample, 0 before that. build: the seconds of building by stage. textures: bytes by name; gpu_bytes:
-        those and the film's. device: its name. rays, only when they are counted: by kind.
+        those and the film's. device: its name. entry: how its program runs, FRAGMENT or COMPUTE. rays, only when they
+        are counted: by kind.
         """
         packed, textures = self._drawn.packed, self.loaded.texture_bytes
         statistics = {
@@ -157,6 +158,7 @@ class Session:
             "gpu_bytes": sum(textures.values()) + self._film_bytes(),
             "textures": dict(textures),
             "device": self.device.name,
+            "entry": self._drawn.entry,
         }
         if self._drawn.counts and self._film:
             eye_hit, reflect, refract, shadow = (int(v) for v in self._film.counters(1))

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .entries import ENTRIES
 from .errors import SceneError
 from .film_options import DepthCue, Outlines
 
@@ -31,6 +32,9 @@ class Settings:
     `world_light`, of worlds that light: SAMPLED by shadow rays, at one sample as HEMISPHERE, which is smooth and has no
     shadows, or NONE. `use_ao`: what is within `ao_distance` (0: however far) takes the share `ao_factor` of the
     hemisphere's light away.
+
+    `entry`: how the GPU is given its work, FRAGMENT or COMPUTE; AUTO, as is faster on the device. The picture is the
+    same.
     """
 
     samples: int = 1
@@ -48,6 +52,7 @@ class Settings:
     use_ao: bool = False
     ao_distance: float = 1.0
     ao_factor: float = 1.0
+    entry: str = "AUTO"
 
     def __post_init__(self):
         for name, lowest, highest in (
@@ -59,7 +64,7 @@ class Settings:
                 raise SceneError(f"{name} is {getattr(self, name)}; it must lie between {lowest} and {highest}")
         if not 0.0 <= self.weight_cutoff < 1.0:
             raise SceneError(f"weight_cutoff is {self.weight_cutoff}; it must be at least 0 and less than 1")
-        for name, known in (("world_light", WORLD_LIGHTS), ("shadows", SHADOWS)):
+        for name, known in (("world_light", WORLD_LIGHTS), ("shadows", SHADOWS), ("entry", ENTRIES)):
             if getattr(self, name) not in known:
                 raise SceneError(f"{name} is {getattr(self, name)!r}; it must be one of {', '.join(known)}")
         if not (np.isfinite(self.ao_distance) and self.ao_distance >= 0.0):
@@ -74,7 +79,8 @@ class Settings:
 
     def draws_as(self, other):
         """Whether a sample is the same with both: of how many, matters only where it is one."""
-        return replace(self, samples=min(self.samples, 2)) == replace(other, samples=min(other.samples, 2))
+        mine, others = (replace(each, samples=min(each.samples, 2), entry="AUTO") for each in (self, other))
+        return mine == others
 
     @property
     def samples_world(self):

@@ -89,27 +89,35 @@ class ShaderSourceError(Exception):
 
 @dataclass(frozen=True)
 class ProgramSource:
-    """All that a device needs to build a program that fills the screen.
+    """All that a device needs to build a program that fills a rectangle of a target.
 
-    `fragment`: GLSL without declarations of uniforms, samplers or outputs. `textures`: names of the data textures,
-    the sampler of `name` is `<name>_data`. `uniform_struct`: GLSL struct `Frame` of the uniform block `frame` ("" for
-    none). `outputs`: names of the vec4 outputs, in the order of the target's attachments.
+    `text`: GLSL without declarations of uniforms, samplers or outputs. `textures`: names of the data textures, the
+    sampler of `name` is `<name>_data`. `uniform_struct`: GLSL struct `Frame` of the uniform block `frame` ("" for
+    none). `outputs`: names of the vec4 outputs, in the order of the target's attachments. The pixel is `PIXEL`.
+
+    The file that main() is in says how pixels are run. Of `<name>_frag.glsl` they are fragments, and what it sets the
+    outputs to is added to the target. Of `<name>_comp.glsl` they are invocations, which do that themselves: there
+    `<output>_image` is the attachment, and the ivec4 `tile` (first pixel, end) the rectangle; some lie beyond its end.
     """
 
     name: str
-    fragment: str
+    text: str
     textures: tuple[str, ...]
     uniform_struct: str
     outputs: tuple[str, ...]
     lines: tuple[tuple[str, int], ...]
 
+    @property
+    def is_compute(self):
+        return self.name.endswith("_comp.glsl")
+
     def origin(self, line):
-        """(file, line) that line number `line` of `fragment` (from 1) comes from."""
+        """(file, line) that line number `line` of `text` (from 1) comes from."""
         return self.lines[min(max(line, 1), len(self.lines)) - 1]
 
     def listing(self, around, radius=3):
-        """Numbered lines of `fragment` around a line, each with the file it comes from, for error messages."""
-        text = self.fragment.splitlines()
+        """Numbered lines of `text` around a line, each with the file it comes from, for error messages."""
+        text = self.text.splitlines()
         first, last = max(around - radius, 1), min(around + radius, len(text))
         rows = []
         for number in range(first, last + 1):
@@ -153,7 +161,7 @@ def _program(entry, features, constants, outputs, folders, records, generated, i
     composer.file(entry)
     return ProgramSource(
         name=entry,
-        fragment="\n".join(composer.text) + "\n",
+        text="\n".join(composer.text) + "\n",
         textures=(*images, *composer.textures),
         uniform_struct=record_glsl.uniform_struct(),
         outputs=outputs,

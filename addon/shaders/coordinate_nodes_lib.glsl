@@ -110,7 +110,7 @@ vec3 coordinate_sky_window(Point point)
 {
   vec3 camera = coordinate_vector_to_camera(point.position);
   if (frame_orthographic > 0.5 && point.ray_kind == RAY_CAMERA) {
-    camera.xy = gl_FragCoord.xy * frame_raster.xy + frame_raster.zw;
+    camera.xy = PIXEL * frame_raster.xy + frame_raster.zw;
   }
   return coordinate_window(camera);
 }

@@ -146,7 +146,7 @@ LightChoice light_tree_choose(inout int index, vec3 point, vec3 normal, bool aro
   if (frame_sample >= 0.0) {
     float probability;
     int dimension = (depth * LIGHT_PICKS + index) * 2;
-    float u = sampling_2d(sampling_pixel(gl_FragCoord.xy), int(frame_sample), dimension).x;
+    float u = sampling_2d(sampling_pixel(PIXEL), int(frame_sample), dimension).x;
     u = (float(index) + u) / float(LIGHT_PICKS);
     choice.light = light_tree_pick(point, normal, around, total, u, probability);
     choice.weight = 1.0 / (float(LIGHT_PICKS) * max(probability, 1e-30));

@@ -279,7 +279,7 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
 #endif
   if (frame_sample >= 0.0) {
     /* The same facet for both: together they keep what comes in where they are as rough. Lights take numbers from 0 on. */
-    vec2 u = sampling_2d(sampling_pixel(gl_FragCoord.xy), int(frame_sample), -path.depth);
+    vec2 u = sampling_2d(sampling_pixel(PIXEL), int(frame_sample), -path.depth);
     if (mirror_is_rough) {
       mirrored = gloss_mirrored(material, eta, normal, incoming, u, of_coat, mirror, density_mirrored);
     }

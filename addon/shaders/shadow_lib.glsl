@@ -92,7 +92,7 @@ vec3 shadow_origin(Lit lit, vec3 direction)
 /* Make `shadow` a ray towards the world: mirrors have rays of their own as well. False where it brings nothing. */
 bool shadow_to_world(inout Shadow shadow, Lit lit)
 {
-  vec2 u = sampling_2d(sampling_pixel(gl_FragCoord.xy), int(frame_sample), SHADOW_WORLD + lit.depth);
+  vec2 u = sampling_2d(sampling_pixel(PIXEL), int(frame_sample), SHADOW_WORLD + lit.depth);
   float scale;
   vec3 direction = world_light_direction(lit.normal, lit_behind(lit), u, scale);
   float cosine = dot(lit.normal, direction);
@@ -127,7 +127,7 @@ vec3 shadow_hemisphere(Lit lit)
 /* Make `shadow` number `ray` of the rays that ask whether what is near lets the world's light pass. */
 bool shadow_to_near(inout Shadow shadow, Lit lit, int ray)
 {
-  vec2 u = sampling_2d(sampling_pixel(gl_FragCoord.xy), int(frame_sample), SHADOW_WORLD + lit.depth);
+  vec2 u = sampling_2d(sampling_pixel(PIXEL), int(frame_sample), SHADOW_WORLD + lit.depth);
   vec3 direction = world_light_ambient_direction(lit.normal, ray, u);
   shadow.contribution = shadow_hemisphere(lit) * (frame_ao_factor / frame_ao_rays);
   shadow.tint = vec3(1.0);
@@ -228,7 +228,7 @@ bool shadow_to_light(inout Shadow shadow, inout Lit lit, inout int index, inout 
 #else
     int dimension = lit.depth * shadow_light_turns() + index;
 #endif
-    u = sampling_2d(sampling_pixel(gl_FragCoord.xy), int(frame_sample), dimension);
+    u = sampling_2d(sampling_pixel(PIXEL), int(frame_sample), dimension);
   }
   vec3 arriving = weight * light_shaped_at(light, number, lit.surface.position, sampled, u, direction, t_max);
   if (optics_largest(arriving) <= 0.0) {

@@ -4,6 +4,6 @@
 
 void main()
 {
-  vec3 direction = octahedron_direction(gl_FragCoord.xy * frame_raster.xy + frame_raster.zw);
+  vec3 direction = octahedron_direction(PIXEL * frame_raster.xy + frame_raster.zw);
   out_color = vec4(world_radiance(ray_make(vec3(0.0), direction, RAY_DIFFUSE)), 1.0);
 }

@@ -32,6 +32,7 @@ def sync_settings(scene, preview=False):
         use_ao=conic.use_ao,
         ao_distance=conic.ao_distance,
         ao_factor=conic.ao_factor,
+        entry=conic.entry,
     )
 
 

@@ -63,6 +63,17 @@ class CONIC_RENDER_PT_shapes(RenderPanel, bpy.types.Panel):
         column.prop(settings, "curve_tolerance" if settings.curve_sampling == "PIXELS" else "curve_steps")
 
 
+class CONIC_RENDER_PT_performance(RenderPanel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(context.scene.conic, "entry")
+
+
 def _draw_pause(header, context):
     """The switch in the header of a rendered viewport."""
     if context.engine == ENGINE and context.space_data.shading.type == "RENDERED":
@@ -71,7 +82,13 @@ def _draw_pause(header, context):
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (CONIC_RENDER_PT_sampling, CONIC_RENDER_PT_viewport, CONIC_RENDER_PT_light_paths, CONIC_RENDER_PT_shapes)
+    (
+        CONIC_RENDER_PT_sampling,
+        CONIC_RENDER_PT_viewport,
+        CONIC_RENDER_PT_light_paths,
+        CONIC_RENDER_PT_shapes,
+        CONIC_RENDER_PT_performance,
+    )
 )
 
 

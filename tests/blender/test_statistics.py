@@ -57,6 +57,7 @@ def filled():
     return Statistics(
         "Render",
         device="Some GPU",
+        entry="COMPUTE",
         width=1920,
         height=1080,
         samples=16,
@@ -74,7 +75,7 @@ def filled():
 def test_log_line():
     assert statistics.log_line(filled()) == (
         "Conic | 66,430 spheres, 12 triangles, 1,000 instances | 3.1 MiB GPU | 300 MiB peak | "
-        "read 0.1 s, tree 0.2 s, first picture 0.4 s, total 12 s | Some GPU"
+        "read 0.1 s, tree 0.2 s, first picture 0.4 s, total 12 s | compute shader | Some GPU"
     )
 
 
@@ -90,7 +91,7 @@ def test_sections_of_the_panel():
         ("Blender's peak", "300 MiB"),
     ]
     assert sections["Time"][:3] == [("Read", "0.1 s"), ("    place", "0.022 s"), ("Tree", "0.2 s")]
-    assert ("Size", "1,920 x 1,080") in sections["Render"]
+    assert ("Size", "1,920 x 1,080") in sections["Render"] and ("Shader", "Compute") in sections["Render"]
     unknown = dict(statistics.sections(Statistics("Viewport")))
     assert "Objects" not in unknown and "Instancing" not in unknown, "nothing is said of what is not known"
 

@@ -38,6 +38,7 @@ DEFAULTS = {
     "max_depth": 8,
     "weight_cutoff": 1 / 512,
     "shadows": "TRANSPARENT",
+    "entry": "AUTO",
     "recognise": "ALWAYS",
     "curve_sampling": "PIXELS",
     "curve_tolerance": 0.25,

@@ -210,7 +210,7 @@ def test_a_picture_without_film_options_has_nothing_of_them_in_its_program(devic
     scene.add_spheres((0.0, 0.0, 0.0), 1.0)
     session = Session(device)
     session.load(scene, Settings())
-    assert "guide" not in session.loaded.drawn.source.fragment and session.loaded.drawn.outputs == ("out_color",)
+    assert "guide" not in session.loaded.drawn.source.text and session.loaded.drawn.outputs == ("out_color",)
     session.free()
 
 

@@ -1,5 +1,7 @@
 """Whatever a scene uses: the program for it is valid GLSL."""
 
+import re
+
 import pytest
 
 from addon.engine import shader_source
@@ -21,5 +23,22 @@ def test_every_feature_alone_and_left_out(device, features):
     """`device.program` raises where a driver refuses the text."""
     outputs = ("out_color", *(("out_rays", "out_dropped") if "COUNT_RAYS" in features else ()))
     outputs += ("out_guide",) if "HAS_OUTLINES" in features else ()
-    source = shader_source.program("trace_frag.glsl", features, CONSTANTS, outputs, generated=NO_PROGRAMS)
+    source = shader_source.program("film_frag.glsl", features, CONSTANTS, outputs, generated=NO_PROGRAMS)
     assert device.program(source) is not None
+
+
+@pytest.mark.parametrize("name", ["nothing", "everything"])
+def test_the_compute_entry(device, name):
+    """What both entries include is tested above."""
+    if not device.can_compute:
+        pytest.skip("this driver has no compute programs")
+    features = COMBINATIONS[name]
+    outputs = ("out_color", "out_rays", "out_dropped", "out_guide") if features else ("out_color",)
+    source = shader_source.program("film_comp.glsl", features, CONSTANTS, outputs, generated=NO_PROGRAMS)
+    assert source.is_compute and device.program(source) is not None
+
+
+def test_nothing_that_traces_knows_its_entry():
+    """The pixel is `PIXEL`, which devices define."""
+    for path in shader_source.SHADER_FOLDER.glob("*_lib.glsl"):
+        assert not re.search(r"\bgl_(FragCoord|GlobalInvocationID|LocalInvocation\w+|WorkGroupID)\b", path.read_text())

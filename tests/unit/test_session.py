@@ -15,6 +15,7 @@ class NoDevice:
     """Keeps what it was asked for."""
 
     name, max_texture_size = "no device", 16384
+    can_compute = True
 
     def __init__(self):
         self.hosts, self.alive, self.sources, self.released = {}, [], [], []
@@ -86,7 +87,7 @@ def test_statistics_of_what_was_loaded_and_drawn():
 
 def program_of(scene, **settings):
     """Names defined by the settings and features that the program was made with, by what its text holds."""
-    return loaded(scene, **settings).device.sources[0].fragment
+    return loaded(scene, **settings).device.sources[0].text
 
 
 def test_programs_hold_what_the_materials_ask_for():

@@ -29,7 +29,7 @@ GENERATED = (("programs_lib.glsl", NodePrograms().text()),)
 
 def body(source):
     """The program's lines from files, without the constants that every program has."""
-    text = source.fragment.splitlines()
+    text = source.text.splitlines()
     return [line for line, (file, _) in zip(text, source.lines, strict=True) if file.endswith(".glsl")]
 
 
@@ -58,7 +58,7 @@ def test_what_is_conditioned_away_is_not_included(compose):
 
 def test_every_line_knows_its_origin(compose):
     source = compose(main='first\n#include "a.glsl"\nlast', a="#ifdef HAS_SPHERE\nx\n#endif\ny")
-    text = source.fragment.splitlines()
+    text = source.text.splitlines()
     origins = {line: source.origin(number) for number, line in enumerate(text, 1)}
     assert origins["first"] == ("main.glsl", 1) and origins["last"] == ("main.glsl", 3)
     assert origins["y"] == ("a.glsl", 4)
@@ -70,8 +70,8 @@ def test_every_line_knows_its_origin(compose):
 def test_records_bring_their_reader_and_texture_once(compose):
     source = compose(main="#include <sphere>\n#include <sphere>\n#include <light>\n#include <material>\n")
     assert source.textures == ("spheres", "tables")
-    assert source.fragment.count("struct Sphere {") == 1
-    assert source.fragment.count("vec4 fetch_tables(int texel)") == 1
+    assert source.text.count("struct Sphere {") == 1
+    assert source.text.count("vec4 fetch_tables(int texel)") == 1
 
 
 def test_a_record_of_images_brings_their_texels(compose):
@@ -111,10 +111,10 @@ def test_folders_are_searched_in_order_and_records_can_be_added(tmp_path):
 
 
 def test_the_same_request_gives_the_same_program():
-    assert program("trace_frag.glsl", KINDS, {"A": 1, "B": 2}) is program(
-        "trace_frag.glsl", KINDS[::-1], {"B": 2, "A": 1}
+    assert program("film_frag.glsl", KINDS, {"A": 1, "B": 2}) is program(
+        "film_frag.glsl", KINDS[::-1], {"B": 2, "A": 1}
     )
-    assert "#define A 1" in program("trace_frag.glsl", KINDS, {"A": 1}).fragment
+    assert "#define A 1" in program("film_frag.glsl", KINDS, {"A": 1}).text
 
 
 def test_every_feature_is_tested_and_every_library_used():
@@ -148,7 +148,7 @@ def test_libraries_keep_the_rules_of_the_house():
 
 @pytest.mark.parametrize("feature", sorted(FEATURES))
 def test_a_program_has_only_the_textures_it_uses(feature):
-    source = shader_source.program("trace_frag.glsl", {feature}, generated=GENERATED)
+    source = shader_source.program("film_frag.glsl", {feature}, generated=GENERATED)
     kind = feature.removeprefix("HAS_").lower()
     for record in layout.RECORDS:
         if record.texture in ("tables", "nodes", "instances"):
@@ -159,7 +159,7 @@ def test_a_program_has_only_the_textures_it_uses(feature):
 
 def test_structs_have_no_constructors():
     """Metal's language has none of GLSL's kind: structs are filled member by member."""
-    text = program("trace_frag.glsl", FEATURES, {}, generated=GENERATED).fragment
+    text = program("film_frag.glsl", FEATURES, {}, generated=GENERATED).text
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     structs = re.findall(r"\bstruct (\w+)", text)
     assert {"Ray", "Surface", "Sphere"} <= set(structs)

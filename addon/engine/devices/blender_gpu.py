@@ -12,7 +12,16 @@ import numpy as np
 from ..errors import DeviceError
 from ..glsl_functions import SHADER_FOLDER
 from ..layout import DATA_WIDTH, data_texture
-from .base import FULL_SCREEN_TRIANGLE, describe_compile_error, loaded_as_images, texel_readers
+from .base import (
+    FULL_SCREEN_TRIANGLE,
+    GROUP_SIZE,
+    PIXEL,
+    PIXEL_OF_COMPUTE,
+    describe_compile_error,
+    loaded_as_images,
+    texel_readers,
+    tile_and_groups,
+)
 
 _VERTEX = "void main() { gl_Position = vec4(position, 0.0, 1.0); }"
 
@@ -59,6 +68,7 @@ class BlenderDevice:
                 f"Blender has no GPU context here ({error}). Conic draws with OpenGL, Vulkan or Metal; on a "
                 "machine without a GPU install Mesa's software drivers (Debian, Ubuntu: libegl1 and libgl1-mesa-dri)"
             ) from error
+        self.can_compute = hasattr(gpu, "compute")
         self._batch_for_shader = batch_for_shader
 
     def _buffer(self, array):
@@ -145,52 +155,87 @@ class BlenderDevice:
             number = re.search(r":(\d+):\d+", log)
             line = int(number.group(1)) if number else 0
             raise DeviceError(describe_compile_error(source, log, line)) from error
+        if source.is_compute:
+            return source, shader, None
         return source, shader, self._batch_for_shader(shader, "TRIS", {"position": FULL_SCREEN_TRIANGLE})
 
     def _create_info(self, source):
         info = self._gpu.types.GPUShaderCreateInfo()
-        info.vertex_in(0, "VEC2", "position")
         if source.uniform_struct:
             info.typedef_source(source.uniform_struct)
             info.uniform_buf(0, "Frame", "frame")
-        images = loaded_as_images(source, self.name)
+        images, written = loaded_as_images(source, self.name), len(source.outputs) if source.is_compute else 0
         for unit, name in enumerate(source.textures):
             if name in images:
-                info.image(images.index(name), "RGBA32F", "FLOAT_2D", f"{name}_data", qualifiers={"READ"})
+                info.image(written + images.index(name), "RGBA32F", "FLOAT_2D", f"{name}_data", qualifiers={"READ"})
             else:
                 info.sampler(unit, "FLOAT_2D", f"{name}_data")
         for name, value in texel_readers(source, images):
             info.define(name, value)
+        (self._add_compute_stage if source.is_compute else self._add_stages)(info, source)
+        return info
+
+    def _add_stages(self, info, source):
+        info.define("PIXEL", PIXEL)
+        info.vertex_in(0, "VEC2", "position")
         for location, name in enumerate(source.outputs):
             info.fragment_out(location, "VEC4", name)
         info.vertex_source(_VERTEX)
-        info.fragment_source(source.fragment)
-        return info
+        info.fragment_source(source.text)
+
+    def _add_compute_stage(self, info, source):
+        info.define("PIXEL", PIXEL_OF_COMPUTE)
+        info.local_group_size(GROUP_SIZE, 1, 1)
+        info.push_constant("IVEC4", "tile")
+        for unit, name in enumerate(source.outputs):
+            info.image(unit, "RGBA32F", "FLOAT_2D", f"{name}_image", qualifiers={"READ", "WRITE"})
+        info.compute_source(source.text)
 
     def draw(self, program, target, rectangle, textures, uniforms):
         source, shader, batch = program
         if source in _PROGRAMS:
             _PROGRAMS.move_to_end(source)
-        state = self._gpu.state
         block = self._gpu.types.GPUUniformBuf(self._buffer(uniforms))
+        if source.is_compute:
+            self._dispatch(source, shader, target, rectangle, textures, block)
+        else:
+            self._draw(source, shader, batch, target, rectangle, textures, block)
+        target.keep = block, textures  # until the next draw has replaced them: the GPU may not have read them yet
+
+    def _draw(self, source, shader, batch, target, rectangle, textures, block):
+        state = self._gpu.state
         with target.framebuffer.bind():
             state.scissor_test_set(True)
             state.scissor_set(*rectangle)
             state.blend_set("ADDITIVE_PREMULT")
             try:
-                shader.bind()
-                if source.uniform_struct:
-                    shader.uniform_block("frame", block)
-                images = loaded_as_images(source, self.name)
-                for name in source.textures:
-                    bind = shader.image if name in images else shader.uniform_sampler
-                    bind(f"{name}_data", textures[name])
+                self._bind(source, shader, textures, block)
                 batch.draw(shader)
             finally:
                 self._gpu.shader.unbind()
                 state.blend_set("NONE")
                 state.scissor_test_set(False)
-        target.keep = block, textures  # until the next draw has replaced them: the GPU may not have read them yet
+
+    def _dispatch(self, source, shader, target, rectangle, textures, block):
+        tile, groups = tile_and_groups(rectangle)
+        try:
+            self._bind(source, shader, textures, block)
+            for name, texture in zip(source.outputs, target.colors, strict=True):
+                shader.image(f"{name}_image", texture)
+            shader.uniform_int("tile", tile)
+            self._gpu.compute.dispatch(shader, *groups, 1)  # Blender puts a barrier after it
+        finally:
+            self._gpu.shader.unbind()
+
+    def _bind(self, source, shader, textures, block):
+        """Make a program the current one, with what it reads."""
+        shader.bind()
+        if source.uniform_struct:
+            shader.uniform_block("frame", block)
+        images = loaded_as_images(source, self.name)
+        for name in source.textures:
+            bind = shader.image if name in images else shader.uniform_sampler
+            bind(f"{name}_data", textures[name])
 
     def attachment(self, target, attachment):
         return target.colors[attachment]

@@ -10,7 +10,17 @@ import numpy as np
 
 from ..errors import DeviceError
 from ..layout import DATA_WIDTH
-from .base import FULL_SCREEN_TRIANGLE, describe_compile_error, loaded_as_images, row_pieces, texel_readers
+from .base import (
+    FULL_SCREEN_TRIANGLE,
+    GROUP_SIZE,
+    PIXEL,
+    PIXEL_OF_COMPUTE,
+    describe_compile_error,
+    loaded_as_images,
+    row_pieces,
+    texel_readers,
+    tile_and_groups,
+)
 
 _VERTEX = """#version 330
 in vec2 position;
@@ -80,7 +90,7 @@ def _in_context(method):
 
 
 class HeadlessDevice:
-    """`Device` on an OpenGL 3.3 context of its own. Raises DeviceError when there is no driver."""
+    """`Device` on an OpenGL context of its own, 3.3 at least. Raises DeviceError when there is no driver."""
 
     def __init__(self):
         self._programs = {}
@@ -91,6 +101,7 @@ class HeadlessDevice:
             info = self._context.info
         self.name = f"{info['GL_RENDERER']} (OpenGL {info['GL_VERSION']})"
         self.max_texture_size = int(info["GL_MAX_TEXTURE_SIZE"])
+        self.can_compute = self._context.version_code >= 430
 
     def close(self):
         """Give back the context and everything that was made in it; the device cannot be used any more."""
@@ -149,9 +160,12 @@ class HeadlessDevice:
     @_in_context
     def program(self, source):
         if source not in self._programs:
-            fragment = self._declarations(source) + source.fragment
+            text = self._declarations(source) + source.text
             try:
-                program = self._context.program(vertex_shader=_VERTEX, fragment_shader=fragment)
+                if source.is_compute:
+                    program = self._context.compute_shader(text)
+                else:
+                    program = self._context.program(vertex_shader=_VERTEX, fragment_shader=text)
             except Exception as error:  # moderngl.Error, whose text holds the driver's log
                 number = re.search(r"\b0[:(](\d+)", str(error))
                 line = int(number.group(1)) if number else 0
@@ -160,47 +174,64 @@ class HeadlessDevice:
             for unit, name in enumerate(source.textures):
                 if f"{name}_data" in program and name not in images:
                     program[f"{name}_data"] = unit
-            vertices = self._context.vertex_array(program, [(self._triangle, "2f", "position")])
-            self._programs[source] = (source, vertices)
+            if not source.is_compute:
+                program = self._context.vertex_array(program, [(self._triangle, "2f", "position")])
+            self._programs[source] = (source, program)
         return self._programs[source]
 
     def _images_of(self, source):
         return loaded_as_images(source, self.name) if self._context.version_code >= 420 else ()
 
     def _declarations(self, source):
-        images = self._images_of(source)
+        images, written = self._images_of(source), source.outputs if source.is_compute else ()
         textures = "".join(f"#define {name} {value}\n" for name, value in texel_readers(source, images))
         for name in source.textures:
             if name in images:
-                textures += f"layout(rgba32f, binding = {images.index(name)}) readonly uniform image2D {name}_data;\n"
+                unit = len(written) + images.index(name)
+                textures += f"layout(rgba32f, binding = {unit}) readonly uniform image2D {name}_data;\n"
             else:
                 textures += f"uniform sampler2D {name}_data;\n"
-        outputs = "".join(f"layout(location = {i}) out vec4 {name};\n" for i, name in enumerate(source.outputs))
         block = f"{source.uniform_struct}layout(std140) uniform frame_block {{ Frame frame; }};\n"
-        version = 420 if images else 330
-        return f"#version {version}\n{block if source.uniform_struct else ''}{textures}{outputs}#line 1\n"
+        head = f"{block if source.uniform_struct else ''}{textures}"
+        if source.is_compute:
+            head += f"layout(local_size_x = {GROUP_SIZE}) in;\nuniform ivec4 tile;\n"
+            for unit, name in enumerate(written):
+                head += f"layout(rgba32f, binding = {unit}) uniform image2D {name}_image;\n"
+            return f"#version 430\n#define PIXEL {PIXEL_OF_COMPUTE}\n{head}#line 1\n"
+        outputs = "".join(f"layout(location = {i}) out vec4 {name};\n" for i, name in enumerate(source.outputs))
+        return f"#version {420 if images else 330}\n#define PIXEL {PIXEL}\n{head}{outputs}#line 1\n"
 
     @_in_context
     def draw(self, program, target, rectangle, textures, uniforms):
-        source, vertices = program
-        gl = self._context
+        source, runner = program
         uniforms = np.ascontiguousarray(uniforms, np.float32)
         if self._uniforms is None or self._uniforms.size != uniforms.nbytes:
-            self._uniforms = gl.buffer(reserve=uniforms.nbytes)
+            self._uniforms = self._context.buffer(reserve=uniforms.nbytes)
         self._uniforms.write(uniforms.tobytes())
         self._uniforms.bind_to_uniform_block(0)
-        images = self._images_of(source)
+        images, written = self._images_of(source), len(source.outputs) if source.is_compute else 0
         for unit, name in enumerate(source.textures):
             if name in images:
-                textures[name].bind_to_image(images.index(name), read=True, write=False)
+                textures[name].bind_to_image(written + images.index(name), read=True, write=False)
             else:
                 textures[name].use(unit)
+        (self._dispatch if source.is_compute else self._draw)(runner, target, rectangle)
+
+    def _draw(self, vertices, target, rectangle):
+        gl = self._context
         target.use()
         target.scissor = rectangle
         gl.enable_only(gl.BLEND)
         gl.blend_func = gl.ONE, gl.ONE
         vertices.render(gl.TRIANGLES)
         target.scissor = None
+
+    def _dispatch(self, program, target, rectangle):
+        for unit, texture in enumerate(target.color_attachments):
+            texture.bind_to_image(unit, read=True, write=True)
+        program["tile"], groups = tile_and_groups(rectangle)
+        program.run(*groups, 1)
+        self._context.memory_barrier()
 
     def attachment(self, target, attachment):
         return target.color_attachments[attachment]

@@ -40,10 +40,21 @@ bool trace_asks(Shadow shadow, Hit hit)
   return asks;
 }
 
-void main()
+/* What a sample adds to the film, an attachment a member. */
+struct Traced {
+  vec4 color;
+#ifdef HAS_OUTLINES
+  vec4 guide;
+#endif
+#ifdef COUNT_RAYS
+  vec4 rays, dropped;
+#endif
+};
+
+Traced trace_sample()
 {
   float t_max;
-  Ray eye = camera_ray(gl_FragCoord.xy, t_max);
+  Ray eye = camera_ray(PIXEL, t_max);
   Path path = shading_path(eye, t_max, vec3(1.0), 1, medium_outside());
   bool path_ends = false; /* no path goes on when the lights are done */
   Path stack[PATH_STACK_SIZE + 1];
@@ -234,12 +245,14 @@ void main()
     }
 #endif
   }
-  out_color = vec4(radiance, ended ? alpha : UNENDED_ALPHA);
+  Traced traced;
+  traced.color = vec4(radiance, ended ? alpha : UNENDED_ALPHA);
 #ifdef HAS_OUTLINES
-  out_guide = guide;
+  traced.guide = guide;
 #endif
 #ifdef COUNT_RAYS
-  out_rays = vec4(eye_hits, reflected, refracted, shadows);
-  out_dropped = vec4(dropped, 1.0, 0.0, 0.0);
+  traced.rays = vec4(eye_hits, reflected, refracted, shadows);
+  traced.dropped = vec4(dropped, 1.0, 0.0, 0.0);
 #endif
+  return traced;
 }
