@@ -36,6 +36,11 @@ class ViewportPicture:
         return self.session.film.reached[0] if self.step == 1 else 0
 
     @property
+    def sample_seconds(self):
+        """What a sample of the whole picture takes, as far as is known."""
+        return self._seconds(1)
+
+    @property
     def finished(self):
         """Whether nothing is left to be drawn, as long as nobody asks for more samples."""
         return self.sample >= self._samples

@@ -68,7 +68,7 @@ class ViewportSession:
                 self._log(began, time.perf_counter() - started)
         except Exception as error:  # a view that raises would do so at every redraw
             self._fail(error)
-        self._tell(time.perf_counter() - started)
+        self._tell()
         self.pace.end(self._tracing)
 
     def trace(self):
@@ -159,12 +159,12 @@ class ViewportSession:
             statistics.add_session(self.picture.session.statistics())
             publish(statistics)
 
-    def _tell(self, seconds):
+    def _tell(self):
         """Show in the viewport how far it is, and that there is something to read in the console."""
-        text = self.error or " | ".join(self._state(seconds))
+        text = self.error or " | ".join(self._state())
         self._engine().update_stats("Conic", text)
 
-    def _state(self, seconds):
+    def _state(self):
         """How far it is, in some words each."""
         report = self.scene.report
         if self.picture:
@@ -173,7 +173,7 @@ class ViewportSession:
             drawn = self.scene.loaded.drawn
             yield f"Sample {min(self.picture.sample + 1, drawn.settings.samples)}/{drawn.settings.samples}"
             yield primitives_text(drawn.packed.statistics["primitives"])
-            yield f"{1000.0 * seconds:.0f} ms"
+            yield f"{1000.0 * self.picture.sample_seconds:.0f} ms a sample"
         if self.paused:
             yield "Paused"
         elif not self.scene.settled:
