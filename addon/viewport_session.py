@@ -34,6 +34,7 @@ class ViewportSession:
         self.error = ""
         self.paused = False
         self._tracing = False  # whether there is something left for `trace`
+        self._shown = 0  # samples of the picture, at the last redraw
         self._failure = ""  # why tracing between redraws failed, until the next redraw tells
         self._frame = 0.0  # seconds that a redraw may take while something happens
 
@@ -82,7 +83,7 @@ class ViewportSession:
         except Exception as error:
             self._fail(error)
             self._failure, finer = self.error, True
-        if finer or self.pace.is_due(self._frame):
+        if finer or self.pace.is_due(self._frame, seen=not self._shown or self.picture.sample > self._shown):
             self.pace.ask()
             self.tag_redraw()
             return False
@@ -137,6 +138,7 @@ class ViewportSession:
         elif bpy.app.background and not self.paused:
             picture.advance(self._frame)
         self.display.draw(picture.layers, view)
+        self._shown = picture.sample
         self._tracing = not (picture.finished or self.paused)
         if self._tracing:
             viewport_tracing.go_on(self, quiet=began)
