@@ -88,8 +88,8 @@ class ConicSceneSettings(FilmProperties, bpy.types.PropertyGroup):
     preview_frame_seconds: FloatProperty(
         name="Frame",
         description="How long a redraw of the viewport may take while something happens. While the view turns, the "
-        "picture has as many pixels as are drawn in this time. Less is smoother, more is sharper. At rest a redraw may "
-        "take up to a quarter of a second, if most of the time would go into redrawing otherwise",
+        "picture has as many pixels as are drawn in this time. Less is smoother, more is sharper. At rest, tracing may "
+        "keep what you do waiting for up to a tenth of a second",
         default=1.0 / 30.0,
         min=0.001,
         soft_min=1.0 / 120.0,

@@ -8,6 +8,8 @@ from collections import deque
 
 #: Seconds from redraw to redraw at most, where there is something new to show.
 MOST = 0.25
+#: The same, where nobody sees what is new: parts of one more sample.
+MOST_UNSEEN = 1.0
 #: Of tracing between two looks at what the user does: so late may the answer come to who does something at last.
 MOST_AT_ONCE = 0.1
 #: Of the time that nothing has happened.
@@ -60,6 +62,7 @@ class RedrawPace:
         rested = time.perf_counter() - self._rested_since
         return max(frame, min(_SHARE * rested, MOST_AT_ONCE))
 
-    def is_due(self, frame):
-        """Whether it is time for the next redraw, with something new but nothing whole to show."""
-        return time.perf_counter() - self._began > max(frame, min(_TIMES * self.overhead, MOST))
+    def is_due(self, frame, seen):
+        """Whether it is time for the next redraw; `seen`: whether one sees what is new."""
+        interval = max(frame, min(_TIMES * self.overhead, MOST)) if seen else max(frame, MOST_UNSEEN)
+        return time.perf_counter() - self._began > interval

@@ -12,6 +12,7 @@ STEPS = (1, 4, 8, 16, 32)
 _FIRST_WIDTH = 8  # of a pixel on the screen, where nothing was measured
 _MOST_WIDTH = 32  # of a pixel on the screen, in the coarsest picture
 _FINER = 0.6  # of the frame's seconds that a finer first picture may take to be preferred: else it would flicker
+_REST = 0.2  # of the seconds for tracing: not worth another tile
 
 
 class ViewportPicture:
@@ -34,6 +35,11 @@ class ViewportPicture:
     def sample(self):
         """How many samples the picture has; 0 while it is a coarse one."""
         return self.session.film.reached[0] if self.step == 1 else 0
+
+    @property
+    def sample_seconds(self):
+        """What a sample of the whole picture takes, as far as is known."""
+        return self._seconds(1)
 
     @property
     def finished(self):
@@ -61,10 +67,10 @@ class ViewportPicture:
         """Go on for about `seconds`, or until the picture has become finer or is finished: whether it is."""
         deadline, ended = time.perf_counter() + seconds, False
         self.session.film.samples = min(self.session.film.samples, self._samples)  # there may be fewer to draw now
-        while not (self.finished or ended) and (left := deadline - time.perf_counter()) > 0.0:
+        while not (self.finished or ended) and (left := deadline - time.perf_counter()) > _REST * seconds:
             if self.session.film.finished:
                 self._go_on()
-            ended = not self.session.step(left, tile_seconds=0.5 * seconds)
+            ended = not self.session.step(0.0, tile_seconds=left)  # one tile: few large ones take less than many
             if ended:
                 self._end_film()
         self._stack()

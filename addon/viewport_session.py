@@ -34,6 +34,7 @@ class ViewportSession:
         self.error = ""
         self.paused = False
         self._tracing = False  # whether there is something left for `trace`
+        self._shown = 0  # samples of the picture, at the last redraw
         self._failure = ""  # why tracing between redraws failed, until the next redraw tells
         self._frame = 0.0  # seconds that a redraw may take while something happens
 
@@ -68,7 +69,7 @@ class ViewportSession:
                 self._log(began, time.perf_counter() - started)
         except Exception as error:  # a view that raises would do so at every redraw
             self._fail(error)
-        self._tell(time.perf_counter() - started)
+        self._tell()
         self.pace.end(self._tracing)
 
     def trace(self):
@@ -82,7 +83,7 @@ class ViewportSession:
         except Exception as error:
             self._fail(error)
             self._failure, finer = self.error, True
-        if finer or self.pace.is_due(self._frame):
+        if finer or self.pace.is_due(self._frame, seen=not self._shown or self.picture.sample > self._shown):
             self.pace.ask()
             self.tag_redraw()
             return False
@@ -137,6 +138,7 @@ class ViewportSession:
         elif bpy.app.background and not self.paused:
             picture.advance(self._frame)
         self.display.draw(picture.layers, view)
+        self._shown = picture.sample
         self._tracing = not (picture.finished or self.paused)
         if self._tracing:
             viewport_tracing.go_on(self, quiet=began)
@@ -159,12 +161,12 @@ class ViewportSession:
             statistics.add_session(self.picture.session.statistics())
             publish(statistics)
 
-    def _tell(self, seconds):
+    def _tell(self):
         """Show in the viewport how far it is, and that there is something to read in the console."""
-        text = self.error or " | ".join(self._state(seconds))
+        text = self.error or " | ".join(self._state())
         self._engine().update_stats("Conic", text)
 
-    def _state(self, seconds):
+    def _state(self):
         """How far it is, in some words each."""
         report = self.scene.report
         if self.picture:
@@ -173,7 +175,7 @@ class ViewportSession:
             drawn = self.scene.loaded.drawn
             yield f"Sample {min(self.picture.sample + 1, drawn.settings.samples)}/{drawn.settings.samples}"
             yield primitives_text(drawn.packed.statistics["primitives"])
-            yield f"{1000.0 * seconds:.0f} ms"
+            yield f"{1000.0 * self.picture.sample_seconds:.0f} ms a sample"
         if self.paused:
             yield "Paused"
         elif not self.scene.settled:

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from addon import viewport_tracing
-from addon.viewport_pace import MOST, MOST_AT_ONCE, RedrawPace
+from addon.viewport_pace import MOST, MOST_AT_ONCE, MOST_UNSEEN, RedrawPace
 
 
 @pytest.fixture
@@ -48,7 +48,9 @@ def test_redraws_are_fewer_where_blender_takes_its_time(clock):
         for passed, due in ((0.9, False), (1.1, True)):
             pace.begin()
             clock[0] += passed * interval
-            assert pace.is_due(0.02) == due
+            assert pace.is_due(0.02, seen=True) == due and not pace.is_due(0.02, seen=False)
+    clock[0] += MOST_UNSEEN
+    assert pace.is_due(0.02, seen=False) and not pace.is_due(2.0 * MOST_UNSEEN, seen=False)
 
 
 def test_only_redraws_that_tracing_waits_for_tell_what_they_cost(clock):
