@@ -14,11 +14,13 @@ import time
 import bpy
 
 from .engine.errors import StoppedError
+from .window_watch import WindowWatch
 
 _IDLE_SECONDS = 0.1  # between two looks for work
 _BUSY_SECONDS = 0.002  # the same, while there has been some lately
 
 _pieces = queue.SimpleQueue()
+_windows = WindowWatch()
 _last = 0.0
 
 
@@ -58,6 +60,8 @@ def call(function, *arguments, stopped):
 def _pump():
     """Do one piece of the work that waits, if any; seconds until the next look."""
     global _last
+    if _windows.changed():
+        return _BUSY_SECONDS
     try:
         piece = _pieces.get_nowait()
     except queue.Empty:

@@ -58,7 +58,7 @@ CURVE_SAMPLING = (
 ENTRIES = (
     ("AUTO", "Automatic", "The faster kind on this GPU, by a short measurement"),
     ("FRAGMENT", "Fragment", "Pixels are drawn. Works on every GPU"),
-    ("COMPUTE", "Compute", "Pixels are computed. Faster on GPUs of data centers. Fragment where the GPU cannot do it"),
+    ("COMPUTE", "Compute", "Pixels are computed, which some GPUs do faster. Fragment where the GPU cannot do it"),
 )
 
 

@@ -9,6 +9,7 @@ import bpy
 SECONDS = 60.0
 _LOOK_SECONDS = 1.0
 _kept = {}  # `ViewportScene`s: when a viewport was last seen to show it
+_renders = False  # whether a render has begun since the last look
 
 
 def keep(scene):
@@ -29,6 +30,10 @@ def let_go():
 def _look():
     """Called by a timer; seconds until the next look, None for none. Who renders with another engine now does not come
     back soon."""
+    global _renders
+    if _renders:
+        _renders = False
+        let_go()
     now = time.monotonic()
     ours = {scene.session_uid for scene in bpy.data.scenes if scene.render.engine == "CONIC"}
     for scene, seen in list(_kept.items()):
@@ -42,8 +47,8 @@ def _look():
 @bpy.app.handlers.persistent
 def _before_render(*_arguments):
     """In another thread, which must not free textures: the next look does."""
-    for scene in [scene for scene in _kept if not scene.sessions]:
-        _kept[scene] = -SECONDS
+    global _renders
+    _renders = True
 
 
 def register():

@@ -39,10 +39,15 @@ def known(device, wanted):
     return "COMPUTE" if wanted == "COMPUTE" else _measured.get(device.name, "FRAGMENT")
 
 
+def is_settled(device, wanted):
+    """Whether it is known what `wanted` means on a device."""
+    return wanted != "AUTO" or not device.can_compute or device.name in _measured
+
+
 def settle(device, wanted):
-    """See to it that it is known what AUTO means on a device, where that is wanted: some milliseconds on its GPU, and
-    what its driver takes to compile two small programs."""
-    if wanted == "AUTO" and device.can_compute and device.name not in _measured:
+    """See to it that it is known what `wanted` means on a device: some milliseconds on its GPU, and what its driver
+    takes to compile two small programs."""
+    if not is_settled(device, wanted):
         is_software = any(name in device.name for name in _SOFTWARE)
         _measured[device.name] = "FRAGMENT" if is_software else measure(device)
 

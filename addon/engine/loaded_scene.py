@@ -5,7 +5,7 @@ there can be drawn until `apply` is through.
 """
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -63,9 +63,9 @@ class Update:
 
     @property
     def leaves_trees(self):
-        """Whether the trees that were built quickly are those of the scene before: good ones of them are of use yet."""
+        """Whether the quick trees of the scene before are still there: good ones of them are of use yet."""
         ours, its = self.packed.residency.quick, self.before.packed.residency.quick if self.before else []
-        return list(map(id, ours)) == list(map(id, its))
+        return set(map(id, its)) <= set(map(id, ours))
 
 
 @dataclass(eq=False)
@@ -212,6 +212,10 @@ class LoadedScene:
         light = before.world_light if world_digest == before.world_digest else world_digest or None
         if self._source(before, packed, settings, light)[0] != before.source:
             change |= Change.PROGRAM
+        if not entries.is_settled(self.device, settings.entry):
+            change |= Change.PROGRAM  # perhaps: nothing is measured here
+        if not _same_values(packed.frame, before.packed.frame):
+            change |= Change.FILM
         return change | Change.FILM if change or not settings.draws_as(before.settings) else change
 
     def _source(self, before, packed, settings, world_light):
@@ -236,8 +240,12 @@ class LoadedScene:
         if update.before is not self.drawn:
             raise RuntimeError("an update to a scene was prepared before another one was applied")
         if not update.change:  # what is drawn stays, and an update to it that is being prepared can follow
-            self.drawn.settings, self.warnings, self.seconds = update.settings, update.warnings, update.seconds
+            self.drawn.settings, self.drawn.camera = update.settings, update.camera
+            self.warnings, self.seconds = update.warnings, update.seconds
             return True
+        if update.before and update.change & Change.TREES:  # meanwhile that may have happened
+            update.settings, update.camera = self.drawn.settings, self.drawn.camera
+            update.warnings = update.packed.warnings_with(update.settings)
         deadline = np.inf if seconds is None else time.perf_counter() + seconds
         update.job = update.job or self._apply(update, in_pieces=seconds is not None)
         try:
@@ -270,7 +278,7 @@ class LoadedScene:
         entries.settle(self.device, update.settings.entry)
         yield
         with timed(update.seconds, "compile"):
-            source, features, program = self._program(before, packed, update.settings, light)
+            source, features, program = self._program(update, light)
             new.complete(source.textures)
             drawn = DrawnScene(
                 scene=update.scene,
@@ -299,17 +307,22 @@ class LoadedScene:
             kept = set(map(id, drawn.textures.values()))
             self._release([texture for texture in textures.values() if id(texture) not in kept])
 
-    def _program(self, *arguments):
-        """(Source, features, program) of the arguments of `_source`; fragments where compute programs are refused."""
-        source, features = self._source(*arguments)
+    def _program(self, update, light):
+        """(Source, features, program) of an update; fragments where the driver refuses a compute program."""
+        source, features = self._source(update.before, update.packed, update.settings, light)
         try:
             return source, features, self.device.program(source)
-        except DeviceError:
+        except DeviceError as error:
             if not source.is_compute:
                 raise
-        entries.refuse(self.device)
-        source, features = self._source(*arguments)
-        return source, features, self.device.program(source)
+            why = str(error).strip().splitlines()[0]
+        settings = replace(update.settings, entry="FRAGMENT")
+        source, features = self._source(update.before, update.packed, settings, light)
+        program = self.device.program(source)
+        entries.refuse(self.device)  # the text is not at fault
+        if update.settings.entry == "COMPUTE":
+            update.warnings.append(f"fragment shaders are used, the driver refuses the compute shader: {why}")
+        return source, features, program
 
     def _world_light(self, update, new):
         """Make the `WorldLight` of an update, step by step; its texture is uploaded where samples need it."""
@@ -340,6 +353,11 @@ class LoadedScene:
     def _release(self, textures):
         for texture in textures:
             self.device.release(texture)
+
+
+def _same_values(these, those):
+    """Whether two dictionaries have the same numbers or arrays."""
+    return these.keys() == those.keys() and all(np.array_equal(value, those[key]) for key, value in these.items())
 
 
 def frame_record(values):

@@ -65,6 +65,7 @@ class Session:
         """The rest of `load`: textures and program of what was built."""
         update, self._update = self._update, None
         self.loaded.apply(update)
+        self.warnings = list(update.warnings)  # the driver's too
 
     def start(self, width, height, camera=None, border=None, pixel_size=1.0):
         """Begin a picture of `width` x `height` pixels, or the part `border` (x, y, width, height) of it. `pixel_size`:

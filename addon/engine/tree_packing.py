@@ -85,8 +85,9 @@ class TreePacker:
             tree, kept, cost = self._refitted(number, parts, move, replaced.kept)
             quick = replaced.quick
         if tree is None:
-            quick = self.quick and self.plan.counts[number].sum() >= QUICK_FROM
-            tree, kept, cost = self._built(number, parts, move, quick)
+            good = self._good_tree(number)
+            quick = self.quick and good is None and self.plan.counts[number].sum() >= QUICK_FROM
+            tree, kept, cost = self._built(number, parts, move, quick, good)
         with timed(self.seconds, "records"):
             for label, part, order in rows_by_kind(tree, parts):
                 attributes.write((number, label), part, order)
@@ -157,14 +158,20 @@ class TreePacker:
                 part = dict(self.plan.geometries[number].kinds())[label]
                 attributes.write((number, label), part, order[start : start + count] - start)
 
-    def _built(self, number, parts, move, quick):
-        """Build a tree and write the records of its primitives; (tree, what is kept of it, its cost or 0)."""
-        geometry, moved = self.plan.geometries[number], self.moved(number)
-        token, of, tree = geometry.tree or (None, None, None)
-        if token is not geometry.token or of != moved:
+    def _good_tree(self, number):
+        """The tree that an improvement has built of a geometry and that is not on the GPU yet, or None."""
+        geometry = self.plan.geometries[number]
+        token, moved, tree = geometry.tree or (None, None, None)
+        return tree if token is geometry.token and moved == self.moved(number) else None
+
+    def _built(self, number, parts, move, quick, tree):
+        """Build a tree, where there is none, and write the records of its primitives; (tree, what is kept of it, its
+        cost or 0)."""
+        geometry = self.plan.geometries[number]
+        if tree is None:
             tree = self._built_anew(geometry.name, parts, move, quick)
             if self._improves(number):
-                geometry.tree = geometry.token, moved, tree
+                geometry.tree = geometry.token, self.moved(number), tree
         with timed(self.seconds, "tree"):
             cost = _cost(tree)
         with timed(self.seconds, "records"):

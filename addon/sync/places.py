@@ -12,7 +12,7 @@ class Places:
     def __init__(self, vacant, spare=0):
         self.things = []
         self._vacant, self._spare = vacant, spare
-        self._slices = {}
+        self._slices, self._free = {}, set()
 
     def of(self, key):
         """The numbers of the things of a key, a range."""
@@ -41,6 +41,7 @@ class Places:
         place = self._slices.pop(key, None)
         if place is not None:
             self.things[place] = [self._vacant] * (place.stop - place.start)
+            self._free.update(range(place.start, place.stop))
 
     def drop_unused(self, is_used):
         """Make room where too many stand that nobody uses: those of keys for which `is_used(key)` is false."""
@@ -50,8 +51,8 @@ class Places:
 
     def _room(self, count):
         """Where `count` further things may stand: a vacant place for a single one, else the end."""
-        if count == 1:
-            for number, thing in enumerate(self.things):
-                if thing is self._vacant:
-                    return slice(number, number + 1)
+        if count == 1 and self._free:
+            number = min(self._free)
+            self._free.remove(number)
+            return slice(number, number + 1)
         return slice(len(self.things), len(self.things) + count)

@@ -2,6 +2,7 @@
 pictures stay in build/app-viewport."""
 
 import shutil
+import time
 
 import numpy as np
 import pytest
@@ -171,3 +172,30 @@ def test_a_second_window_opens_and_closes(rested):
     """)
     rested.rest()
     assert rested.run("result = [len(s.sessions) for s in viewport_scenes._scenes.values()]") == [1]
+
+
+def test_a_window_closes_while_the_view_traces(rested):
+    """No GPU context is active then until another window is drawn: tracing in a timer has to wait for that."""
+    before = ball(rested.picture(), RED)
+    session = "next(iter(next(iter(viewport_scenes._scenes.values())).sessions))"
+    samples = rested.run("""
+        result = bpy.context.scene.conic.preview_samples
+        bpy.context.scene.conic.preview_samples = 4096
+    """)
+    for _ in range(4):
+        rested.run("""
+            with bpy.context.temp_override(**view_parts()):
+                bpy.ops.screen.userpref_show()
+        """)
+        time.sleep(0.3)
+        drawn = rested.run(f"result = {session}.picture.sample")
+        rested.run("""
+            with bpy.context.temp_override(window=bpy.context.window_manager.windows[-1]):
+                bpy.ops.wm.window_close()
+        """)
+        time.sleep(0.3)
+        assert rested.run(f"result = {session}.picture.sample") > drawn, "it goes on"
+    assert rested.run(f"result = {session}.error") == ""
+    rested.run(f"bpy.context.scene.conic.preview_samples = {samples}")
+    rested.rest()
+    assert far(before, ball(rested.picture("windows closed"), RED)) < 0.5

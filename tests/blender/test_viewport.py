@@ -621,16 +621,19 @@ def test_an_edit_goes_before_good_trees(view, crowd, monkeypatch):
 
 
 def test_good_trees_are_not_given_up_for_an_edit_that_changes_nothing(view, crowd, monkeypatch):
-    gate, begun, prepare_better = threading.Event(), [], LoadedScene.prepare_better
+    gate, begun, built, build = threading.Event(), threading.Event(), [], bvh.build
 
-    def wait(loaded, stopped):
-        begun.append(stopped)
-        assert gate.wait(60.0)
-        return prepare_better(loaded, stopped)
+    def wait(lower, *arguments, **options):
+        if len(lower) >= QUICK_FROM:
+            built.append(len(lower))
+            begun.set()
+            assert gate.wait(60.0)
+        return build(lower, *arguments, **options)
 
-    monkeypatch.setattr(LoadedScene, "prepare_better", wait)
+    monkeypatch.setattr(bvh, "build", wait)
     while view.redraw() or not draws()[-1].finished:
         pass
+    assert begun.wait(60.0)
     bpy.context.scene.conic.preview_samples = 5  # no other picture
     bpy.context.object.update_tag()
     while len(records(viewport_log.Load)) < 2 or view.redraw():
@@ -638,7 +641,9 @@ def test_good_trees_are_not_given_up_for_an_edit_that_changes_nothing(view, crow
     assert draws()[-1].sample == 5 and draws()[-1].finished
     gate.set()
     view.settle()
-    assert len(begun) == 1 and loads()[-1].change == Change.TREES
+    assert len(built) == 1 and loads()[-1].change == Change.TREES
+    assert draws()[-1].sample == 5, "the good trees do not bring the old settings back"
+    assert view.session.scene.loaded.drawn.settings.samples == 5
 
 
 def test_the_work_on_good_trees_outlives_an_edit(view, crowd, monkeypatch):
@@ -758,13 +763,14 @@ def test_a_picture_that_fails_between_redraws_is_reported_once(view, monkeypatch
     assert draws()[-1].finished and "lost" not in view.engine.text
 
 
-def test_a_redraw_is_asked_for_when_there_is_something_to_see(view):
+def test_a_redraw_is_asked_for_when_there_is_something_to_see(view, monkeypatch):
     """The whole picture first, and the last sample; slices that give neither ask for none until it is time."""
     bpy.context.scene.conic.preview_samples = 3
-    bpy.context.scene.conic.preview_frame_seconds = 0.001  # the first picture is a coarse one
     view.settle()
     view.look_from(1.0)
-    view.redraw()
+    with monkeypatch.context() as patch:
+        patch.setattr(ViewportPicture, "_choose_step", lambda picture, seconds: STEPS[-1])
+        view.redraw()
     assert draws()[-1].step > 1
     shown = []
     while not view.session.picture.finished:

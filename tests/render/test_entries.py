@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from addon.engine import DeviceError, Light, LightKind, Session, Settings, entries, render
+from addon.engine import DeviceError, Light, LightKind, LoadedScene, Session, Settings, entries, render
 from addon.engine.devices import base
 from addon.engine.film_options import DepthCue, Outlines
 
@@ -142,8 +142,9 @@ def test_where_a_driver_refuses_a_compute_program_fragments_are_drawn(computing,
         return build(source)
 
     monkeypatch.setattr(computing, "program", program)
-    for _ in range(2):
-        assert picture_of(computing, "COMPUTE").statistics["entry"] == "FRAGMENT"
+    found = [picture_of(computing, "COMPUTE") for _ in range(2)]
+    assert [each.statistics["entry"] for each in found] == ["FRAGMENT"] * 2
+    assert [w for w in found[0].warnings if w.startswith("fragment shaders are used") and w.endswith(": no")]
     assert sum(asked) == 1, "it is not asked again"
 
 
@@ -189,15 +190,16 @@ def test_the_probe_draws_the_same_with_both(computing):
     assert np.mean(np.abs(pictures["FRAGMENT"] - pictures["COMPUTE"]) > 1e-2) < 0.01
 
 
-def test_the_entry_can_change_between_pictures_of_a_scene(computing):
-    """Another program, the same textures; `AUTO` for what it means anyway changes nothing."""
-    session, scene = Session(computing), softly_lit()
-    loaded = session.loaded
-    seen = []
-    for entry in ("AUTO", "FRAGMENT", "COMPUTE", "AUTO"):
-        version = loaded.version
-        session.load(scene, Settings(entry=entry))
+def test_the_entry_can_change_between_pictures_of_a_scene(computing, monkeypatch):
+    """Another program, the same textures; what means the same anyway changes nothing."""
+    monkeypatch.setattr(entries, "_SOFTWARE", ())
+    monkeypatch.setattr(entries, "measure", lambda device: "COMPUTE")
+    loaded, scene, seen = LoadedScene(computing), softly_lit(), []
+    for entry in ("FRAGMENT", "FRAGMENT", "AUTO", "COMPUTE", "FRAGMENT", "AUTO"):
+        version, update = loaded.version, loaded.prepare(scene, Settings(entry=entry))
+        assert loaded.apply(update)
         seen.append((loaded.drawn.entry, loaded.version > version))
-    assert [entry for entry, _ in seen] == ["FRAGMENT", "FRAGMENT", "COMPUTE", "FRAGMENT"]
-    assert Settings(entry="COMPUTE").draws_as(Settings()) and seen[2][1]
-    session.free()
+        assert len(seen) == 1 or not update.bytes
+    fragment, compute = ("FRAGMENT", True), ("COMPUTE", True)
+    assert seen == [fragment, ("FRAGMENT", False), compute, ("COMPUTE", False), fragment, compute]
+    loaded.free()

@@ -453,6 +453,28 @@ def test_where_there_is_no_room_beside_what_lies_there_all_is_laid_out_anew(load
     assert update(loaded, scenes[1], Settings()).change == Change.NONE
 
 
+def test_what_has_changed_without_a_trace_stays_when_good_trees_come(loaded):
+    scene = simple_scene(shapes=large(tree_packing.QUICK_FROM))
+    update(loaded, scene, Settings(samples=2), quick=True)
+    better = loaded.prepare_better()
+    moved = replace(scene, camera=Camera.look_at((0.0, -8.0, 0.0), (0.0, 0.0, 0.0)))
+    assert update(loaded, moved, Settings(samples=3), quick=True).change == Change.NONE
+    assert loaded.apply(better) and not loaded.can_improve
+    assert loaded.drawn.settings.samples == 3 and loaded.drawn.camera is moved.camera
+
+
+def test_lines_around_another_attribute_begin_a_new_picture(loaded):
+    """Both attributes are there for the material's sake, so that nothing else differs."""
+    material = Material(diffuse=surface_attribute("a"), metallic=component(surface_attribute("b"), 0))
+    values = {"a": (1.0, 1.0, 1.0, 1.0), "b": (0.0, 1.0, 0.0, 1.0)}
+    shapes = Geometry(Spheres(center=np.zeros((2, 3)), radius=1.0, attributes=values), name="both")
+    scene = replace(simple_scene(shapes=shapes), materials=[material], outline_attribute="a")
+    settings = Settings(outlines=Outlines(around="ATTRIBUTE"))
+    update(loaded, scene, settings)
+    assert update(loaded, replace(scene), settings).change == Change.NONE
+    assert update(loaded, replace(scene, outline_attribute="b"), settings).change == Change.FILM
+
+
 def test_sessions_of_one_scene_begin_anew_when_it_changes(loaded, before):
     sessions = [Session(loaded.device, loaded) for _ in range(2)]
     for size, session in zip((SIZE, (20, 20)), sessions, strict=True):

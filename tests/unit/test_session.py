@@ -15,7 +15,7 @@ class NoDevice:
     """Keeps what it was asked for."""
 
     name, max_texture_size = "no device", 16384
-    can_compute = True
+    can_compute = False
 
     def __init__(self):
         self.hosts, self.alive, self.sources, self.released = {}, [], [], []

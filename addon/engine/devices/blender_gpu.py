@@ -223,7 +223,9 @@ class BlenderDevice:
             for name, texture in zip(source.outputs, target.colors, strict=True):
                 shader.image(f"{name}_image", texture)
             shader.uniform_int("tile", tile)
-            self._gpu.compute.dispatch(shader, *groups, 1)  # Blender puts a barrier after it
+            # Blender puts a barrier after it, for textures and images. None can be had for frame buffers, from which
+            # `read` reads; drivers keep this order nevertheless.
+            self._gpu.compute.dispatch(shader, *groups, 1)
         finally:
             self._gpu.shader.unbind()
 
