@@ -13,8 +13,8 @@ from .camera_rays import camera_rays
 class Embree(Peer):
     name = "Embree"
     unequal = (
-        "Embree (embreex) is asked ray by ray in one thread, in float32, of triangles alone and without any shading; "
-        "its seconds are divided by the number of cores, as if it ran on all.",
+        "Embree (embreex) is asked ray by ray in one thread, in float32, of triangles alone; its seconds are divided "
+        "by the number of cores, as if it ran on all.",
     )
 
     @classmethod

@@ -21,7 +21,7 @@ class Mitsuba(Peer):
     name = "Mitsuba 3"
     unequal = (
         "Mitsuba traces triangles and its ellipsoids shape (all spheres in one) in float32 with Embree's trees, on as "
-        "many threads as there are cores; it is asked for hits, normals and shadow tests alone, Conic shades as well.",
+        "many threads as there are cores.",
     )
 
     @classmethod
