@@ -10,6 +10,7 @@ RESULTS = {
     "peers": ("whitted", "Conic beside POV-Ray and Tachyon over all families of scenes"),
     "traversal": ("traversal", "eye and shadow rays beside Mitsuba 3 and Embree"),
     "growth": ("growth", "seconds and bytes against the number of primitives"),
+    "trees": ("trees", "building and refitting trees: rate, cost beside the exact sweep, memory"),
     "rays": ("rays", "rays a second by kind, seconds by stage"),
     "entries": ("entries", "the path tracer as fragments and as a compute program"),
     "compile": ("compiling", "compiling the programs, cold and warm"),

@@ -9,6 +9,7 @@ COMMANDS = (
     ("peers", "--size", "384", "--runs", "3"),
     ("traversal", "--size", "512", "--runs", "5"),
     ("growth", "--size", "384", "--runs", "3"),
+    ("trees",),
     ("rays", "--size", "256", "--runs", "3"),
     ("entries", "--size", "256", "--runs", "3", "--scenes", "balls", "lattice", "shells", "mount", "crystal", "teapot"),
     ("compile", "--runs", "3"),

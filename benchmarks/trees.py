@@ -1,15 +1,5 @@
-"""How fast hierarchies are built and refitted, how good they are, and what memory that takes.
+"""How fast hierarchies are built and refitted, how good they are, and what memory that takes."""
 
-    python -m benchmarks.bvh_build [--most 1000000] [--runs 5]
-
-Printed are medians of seconds and their spread, from the least to the greatest. The builders take turns, so that what
-else the machine does falls on all alike. `cost`: by the surface area heuristic, relative to that of the exact sweep
-over all primitives, where these are few enough for it. `peak`: bytes per primitive that a build takes at the most, its
-result included and the boxes that it is given left out; `kept`: of the result.
-"""
-
-import argparse
-import statistics
 import time
 import tracemalloc
 import weakref
@@ -21,11 +11,69 @@ from addon.engine.bvh import Form, build, build_forest, quick_build, refit, sah_
 from addon.engine.packing import pack
 from addon.engine.primitives import BY_KIND
 
-MOST_SWEPT = 100_000
+from . import results
+from .measuring import Spread, in_turn
+from .tables import Table, digits
+
+MOST_SWEPT = 1_000_000
 LEAF_SIZE = 8
 TEXTURE_SIZE = 16384
 #: Meshes, triangles of each.
 SMALL = ((10_000, 12), (10_000, 100), (1000, 1000))
+NOTES = (
+    "Builders take turns. 'cost': by the surface area heuristic, relative to that of the exact sweep over all "
+    "primitives where these are few enough for it, else to that of 'build'.",
+    "'peak': bytes a primitive that a build takes at the most, its result included and the boxes that it is given "
+    "left out; 'kept': of the result.",
+    "'spheres that moved': an edit that moves all spheres of a scene, as packed; of it records, boxes and refit.",
+)
+
+
+def add_arguments(parser):
+    parser.add_argument("--most", type=float, default=1e6, help="primitives of the largest scenes")
+    parser.add_argument("--runs", type=int, default=3)
+
+
+def run(arguments):
+    sizes = [n for n in (10_000, 100_000, 1_000_000, 10_000_000) if n <= arguments.most]
+    rows = []
+    for scene, cls in SCENES.items():
+        for n in sizes:
+            rows += measure_builders(scene, cls, n, arguments.runs)
+    for n in sizes[1:]:
+        rows += measure_moved(n, arguments.runs)
+    for meshes, triangles in SMALL:
+        rows += measure_small(meshes, triangles, arguments.runs)
+    values = {"most": arguments.most, "rows": rows}
+    return results.save("trees", values, [table(values)])
+
+
+def table(values):
+    head = (
+        "what",
+        "primitives",
+        "seconds (spread)",
+        "primitives a second",
+        "cost",
+        "peak, bytes",
+        "kept, bytes",
+        "depth",
+    )
+    made = Table("Trees: building and refitting in numpy", head)
+    for row in values["rows"]:
+        seconds = row["seconds"]
+        spread = f"{seconds['median']:.3f} ({seconds['least']:.3f} to {seconds['greatest']:.3f})"
+        cost = f"{row['cost']:.3f}" if "cost" in row else ""
+        rest = (str(round(row[name])) if name in row else "" for name in ("peak", "kept", "depth"))
+        made.add(row["what"], row["count"], spread, digits(row["count"] / seconds["median"]), cost, *rest)
+    made.notes += NOTES
+    return made
+
+
+def row(what, count, seconds, **more):
+    """A row of the table, printed as it comes. `seconds`: a Spread."""
+    print(f"{what:34} {count:9} {seconds.median:8.3f} s", flush=True)
+    return {"what": what, "count": count, "seconds": seconds.json(), **more}
 
 
 def spheres(n, rng):
@@ -53,21 +101,21 @@ SCENES = {spheres: Spheres, clusters: Spheres, slivers: Triangles}
 
 
 def timed(functions, runs):
-    """By name: the seconds of each run of each function, which take turns; what the last one returned."""
-    seconds, results = {name: [] for name in functions}, {}
-    for _ in range(runs):
-        for name, function in functions.items():
+    """By name: the Spread of the seconds of functions that take turns; what the last call of each returned."""
+    returned = {}
+
+    def runner(name):
+        def seconds():
             start = time.perf_counter()
-            results[name] = function()
-            seconds[name].append(time.perf_counter() - start)
-    return seconds, results
+            returned[name] = functions[name]()
+            return time.perf_counter() - start
 
+        return seconds
 
-def row(what, n, seconds, rest=""):
-    """Print a line of the table."""
-    median = statistics.median(seconds)
-    spread = f"{min(seconds):.3f}-{max(seconds):.3f}"
-    print(f"{what:34} {n:9} {median:8.3f} {spread:>14} {n / median:11.0f}  {rest}", flush=True)
+    seconds, failures = in_turn({name: runner(name) for name in functions}, runs)
+    if failures:
+        raise RuntimeError(f"not measured: {failures}")
+    return seconds, returned
 
 
 def peak_bytes(function):
@@ -85,7 +133,7 @@ def kept_bytes(bvh):
 
 
 def measure_builders(scene, cls, n, runs):
-    """Lines for the builders and refits of one scene."""
+    """Rows for the builders and refits of one scene."""
     lo, hi = (corner.astype(np.float32) for corner in scene(n, np.random.default_rng(0)))
     costs = np.array([kind.intersection_cost for kind in BY_KIND], np.float32)
     label = np.full(n, BY_KIND.index(cls), np.int32)
@@ -94,30 +142,28 @@ def measure_builders(scene, cls, n, runs):
         "build": lambda: build(lo, hi, label, **options),
         "quick build": lambda: quick_build(lo, hi, label, leaf_size=LEAF_SIZE),
     }
-    best = None
+    rows, best = [], None
     if n <= MOST_SWEPT:
         seconds, found = timed({"sweep": lambda: sweep_build(lo, hi, label, **options)}, 1)
         best = sah_cost(found["sweep"], intersection_cost=costs)
-        row(f"{scene.__name__}: exact sweep", n, seconds["sweep"], f"cost 1 ({best:.1f})")
+        rows.append(row(f"{scene.__name__}: exact sweep", n, seconds["sweep"], cost=1.0))
     seconds, found = timed(builders, runs)
+    best = best or sah_cost(found["build"], intersection_cost=costs)
     for name, function in builders.items():
-        cost = sah_cost(found[name], intersection_cost=costs)
-        share = (
-            f"cost {cost / best:.3f}" if best else f"cost {cost / sah_cost(found['build'], 1.0, costs):.3f} of build"
-        )
-        memory = f"peak {peak_bytes(function) / n:.0f}, kept {kept_bytes(found[name]) / n:.0f}"
-        row(f"{scene.__name__}: {name}", n, seconds[name], f"{share}, {memory}, depth {found[name].depth}")
-    measure_refits(scene, found["build"], lo, hi, runs)
+        tree = found[name]
+        memory = {"peak": peak_bytes(function) / n, "kept": kept_bytes(tree) / n}
+        cost = float(sah_cost(tree, intersection_cost=costs) / best)
+        rows.append(row(f"{scene.__name__}: {name}", n, seconds[name], cost=cost, depth=int(tree.depth), **memory))
+    return rows + measure_refits(scene, found["build"], lo, hi, runs)
 
 
 def measure_refits(scene, bvh, lo, hi, runs):
-    """Lines for refits: of a tree that was not kept, and of its form around spans in its own order."""
+    """Rows for refits: of a tree that was not kept, and of its form around spans in its own order."""
     form = Form(bvh)
     span = np.concatenate([-lo[bvh.order].T, hi[bvh.order].T])
     form.around(span)
-    seconds, _ = timed({"refit": lambda: refit(bvh, lo, hi), "form": lambda: form.around(span)}, runs)
-    row(f"{scene.__name__}: refit of boxes", len(lo), seconds["refit"])
-    row(f"{scene.__name__}: refit of a kept form", len(lo), seconds["form"])
+    seconds, _ = timed({"boxes": lambda: refit(bvh, lo, hi), "a kept form": lambda: form.around(span)}, runs)
+    return [row(f"{scene.__name__}: refit of {name}", len(lo), spread) for name, spread in seconds.items()]
 
 
 def camera():
@@ -125,7 +171,7 @@ def camera():
 
 
 def measure_moved(n, runs):
-    """A line for an edit that moves all spheres of a scene: their records, boxes and the nodes around them."""
+    """Rows for an edit that moves all spheres of a scene: their records, boxes and the nodes around them."""
     rng = np.random.default_rng(0)
     center, radius = rng.random((n, 3), np.float32), np.full(n, 0.3 * n ** (-1 / 3), np.float32)
     before, seconds, stages = None, [], []
@@ -143,12 +189,14 @@ def measure_moved(n, runs):
         before = packed.residency
         center = center + rng.normal(0.0, 0.1 * radius[0], center.shape).astype(np.float32)
         del shapes[:-1]
-    row("spheres that moved: whole packing", n, seconds)
-    row("    of it records, boxes and refit", n, stages)
+    return [
+        row("spheres that moved: whole packing", n, Spread.of(seconds)),
+        row("spheres that moved: records, boxes, refit", n, Spread.of(stages)),
+    ]
 
 
 def measure_small(meshes, triangles, runs):
-    """Lines for many different meshes, whose trees are built together."""
+    """Rows for many different meshes, whose trees are built together."""
     rng = np.random.default_rng(0)
     first = rng.random((meshes, triangles, 3))
     corner = np.stack([first, *(first + rng.normal(size=(2, *first.shape)) / triangles**0.5)])
@@ -174,31 +222,5 @@ def measure_small(meshes, triangles, runs):
         "whole packing": lambda: pack(scene, TEXTURE_SIZE),
     }
     seconds, _ = timed(functions, runs)
-    for name in functions:
-        share = 20 if name.endswith("(a 20th)") else 1
-        row(
-            f"{meshes} of {triangles}: {name}",
-            n // share,
-            seconds[name],
-            f"{statistics.median(seconds[name]) * share:.1f} s in all",
-        )
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--most", type=float, default=1e6, help="primitives of the largest scenes")
-    parser.add_argument("--runs", type=int, default=5)
-    options = parser.parse_args()
-    sizes = [n for n in (10_000, MOST_SWEPT, 1_000_000, 10_000_000) if n <= options.most]
-    print(f"{'':34} {'n':>9} {'seconds':>8} {'spread':>14} {'a second':>11}")
-    for scene, cls in SCENES.items():
-        for n in sizes:
-            measure_builders(scene, cls, n, options.runs)
-    for n in sizes[1:]:
-        measure_moved(n, options.runs)
-    for meshes, triangles in SMALL:
-        measure_small(meshes, triangles, options.runs)
-
-
-if __name__ == "__main__":
-    main()
+    sizes = {name: n // 20 if name.endswith("(a 20th)") else n for name in functions}
+    return [row(f"{meshes} of {triangles}: {name}", sizes[name], spread) for name, spread in seconds.items()]
