@@ -4,7 +4,9 @@ Every result is printed and written to build/bench as JSON (with the machine, ve
 """
 
 import argparse
+import ast
 import importlib
+from pathlib import Path
 
 RESULTS = {
     "peers": ("whitted", "Conic beside POV-Ray and Tachyon over all families of scenes"),
@@ -24,7 +26,10 @@ RESULTS = {
 
 def main():
     parser = argparse.ArgumentParser(
-        prog="python -m benchmarks", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="python -m benchmarks",
+        description=__doc__,
+        epilog=f"Of one part each, printed only, with options of their own:\n{_modules()}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     commands = parser.add_subparsers(dest="result", required=True)
     for name, (module, said) in RESULTS.items():
@@ -32,6 +37,17 @@ def main():
         importlib.import_module(f"benchmarks.{module}").add_arguments(command)
     arguments = parser.parse_args()
     importlib.import_module(f"benchmarks.{RESULTS[arguments.result][0]}").run(arguments)
+
+
+def _modules():
+    """The modules that are run by themselves, a line each: name and what the docstring begins with."""
+    lines = []
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        text = path.read_text(encoding="utf-8")
+        if path.stem != "__main__" and "__name__ ==" in text:
+            said = ast.get_docstring(ast.parse(text)).splitlines()[0].partition(": `")[0].rstrip(".")
+            lines.append(f"  benchmarks.{path.stem:18} {said}")
+    return "\n".join(lines)
 
 
 if __name__ == "__main__":
