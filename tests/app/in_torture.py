@@ -10,7 +10,9 @@ are the scene and its picture; with `show`, fresh.npy is the picture of end.blen
 else.
 """
 
+import faulthandler
 import json
+import signal
 import sys
 import time
 from inspect import isgenerator
@@ -178,6 +180,7 @@ def tell(failed=""):
     temporary.rename(FOLDER / "end.json")
 
 
+faulthandler.register(signal.SIGUSR1)  # test_torture.py sends it where nothing happens any more
 addon.register()
 if WHAT == "show":
     run_in_window(show(), TICK, tell)
