@@ -162,7 +162,9 @@ def finish(step):
         operate(bpy.ops.screen.region_quadview)
     yield from fill_window()
     look_at_all()
-    bpy.context.scene.conic.preview_samples = LAST_SAMPLES
+    scene = bpy.context.scene
+    scene.conic.preview_samples = LAST_SAMPLES
+    scene.frame_set(scene.frame_current)  # as opening the file does: what is animated and was moved goes back
     np.save(FOLDER / "end.npy", (yield from picture()))
     bpy.ops.wm.save_as_mainfile(filepath=str(FOLDER / "end.blend"), copy=True)
     log(end=step)
