@@ -64,30 +64,7 @@ def objects(count):
             bpy.context.scene.collection.objects.link(obj)
 
 
-def instances(count):
-    """So many instances of a monkey, by geometry nodes: one object."""
-    bpy.ops.mesh.primitive_monkey_add()
-    monkey = bpy.context.object
-    monkey.data.materials.append(paint("Warm", (0.8, 0.35, 0.1)))
-    monkey.scale = [radius(count)] * 3
-    monkey.hide_viewport = monkey.hide_render = True
-    mesh = bpy.data.meshes.new("Places")
-    mesh.from_pydata(centers(count), [], [])
-    holder = bpy.data.objects.new("Instances", mesh)
-    bpy.context.scene.collection.objects.link(holder)
-    tree = bpy.data.node_groups.new("Instances", "GeometryNodeTree")
-    for way in ("INPUT", "OUTPUT"):
-        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
-    kinds = ("NodeGroupInput", "GeometryNodeObjectInfo", "GeometryNodeInstanceOnPoints", "NodeGroupOutput")
-    places, copied, made, shown = (tree.nodes.new(kind) for kind in kinds)
-    copied.inputs["Object"].default_value, copied.inputs["As Instance"].default_value = monkey, True
-    tree.links.new(places.outputs[0], made.inputs["Points"])
-    tree.links.new(copied.outputs["Geometry"], made.inputs["Instance"])
-    tree.links.new(made.outputs[0], shown.inputs[0])
-    holder.modifiers.new("Instances", "NODES").node_group = tree
-
-
-PARTS = {"points": points, "objects": objects, "instances": instances}
+PARTS = {"points": points, "objects": objects}
 
 
 def paint(name, color):
