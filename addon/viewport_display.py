@@ -10,6 +10,7 @@ import gpu
 import numpy as np
 from gpu_extras.batch import batch_for_shader
 
+from .engine.devices.blender_gpu import blank_texture
 from .engine.film import UNENDED_ALPHA
 from .engine.outlines import DISPLAY_GAMMA
 
@@ -96,6 +97,8 @@ class Display:
         shader.uniform_float("lines", float(layer.line_samples if layer.lines else 0))
         shader.uniform_float("smoothed", float(layer.smooth))
         rectangle.draw(shader)
+        for name in ("color_sums", "line_sums"):
+            shader.uniform_sampler(name, blank_texture())
 
 
 def _place(edges, window):

@@ -7,8 +7,8 @@
 It takes the application as tools/run_app_tests does, from CONIC_BLENDER or the PATH, with the window on the screen of
 DISPLAY or, where there is none, on a virtual one (Xvfb). Leave the mouse alone while it runs: it must stay in the view.
 The same file is looked at from the same place by each engine in turn, in one process a scene: opened, switched from
-Solid to Rendered, turned by steps of 15 degrees, and one ball moved. All that the window shows is read back from the
-window itself. Printed are the medians of seconds from the action to
+Solid to Rendered, turned by steps of 15 degrees, one ball moved, and that undone. All that the window shows is read
+back from the window itself. Printed are the medians of seconds from the action to
 
     first   something of the new picture: nearer to it than to the one before, and not blank
     seen    the new picture recognisably: means of 8 x 8 pixels correlate by more than 0.9 with the last picture's
@@ -37,7 +37,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 ENGINES = ["CONIC", "CYCLES", "BLENDER_EEVEE"]
 SCENES = ["points_1e3", "points_1e5", "points_1e6", "objects_1e3", "objects_1e4"]
-ACTIONS = ["open", "switch", "orbit", "move"]
+ACTIONS = ["open", "switch", "orbit", "move", "undo"]
 MILESTONES = ["first", "seen", "sharp", "done"]
 
 

@@ -21,6 +21,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import addon
 from benchmarks.viewport_milestones import has_changed, milestones
 from tests.app.live_view import Screen, fill_window, run_in_window, view_parts
+from tests.app.torture_edits import operate
 
 sys.dont_write_bytecode = True
 FOLDER, SCENE, ROUNDS, *ENGINES = sys.argv[sys.argv.index("--") + 1 :]
@@ -53,6 +54,14 @@ def show(kind):
 def move(turn):
     """Shift the ball to the side, to and fro."""
     bpy.data.objects["Ball"].location.z = 0.9 if turn % 2 else 1.25
+
+
+def move_undoably():
+    """Shift the ball far from where it is, so that undo has a step to take back."""
+    operate(bpy.ops.ed.undo_push, message="Before")
+    ball = bpy.data.objects["Ball"]
+    ball.location.z = 1.25 if ball.location.z < 1.0 else 0.9
+    operate(bpy.ops.ed.undo_push, message="Move")
 
 
 def open_file(name, engine):
@@ -112,6 +121,9 @@ def round_of(engine, number):
         tell("orbit", **(yield from measured(lambda turn=turn: look_from(15.0 * (turn + 1)))))
     for turn in range(REPEATS):
         tell("move", **(yield from measured(lambda turn=turn: move(turn + 1))))
+    for _ in range(REPEATS):
+        yield from settled(move_undoably)
+        tell("undo", **(yield from measured(lambda: operate(bpy.ops.ed.undo))))
 
 
 def steps():

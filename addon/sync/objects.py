@@ -30,11 +30,13 @@ _NO_FACES = "mesh: it has no faces"
 
 def describe(obj, depsgraph):
     """What a render takes an object as: (kind, reason). `kind` is MESH, SPHERE, CYLINDER, CONE, DISC, PLANE,
-    POINT_CLOUD, CURVES, HAIR or INSTANCES, or NONE for what is not rendered.
+    POINT_CLOUD, CURVES, HAIR or INSTANCES, NONE for what is not rendered, or UNKNOWN.
 
     A panel may ask each time that it is drawn: recognition is repeated only when the mesh has changed.
     """
     evaluated = obj.evaluated_get(depsgraph)
+    if not evaluated.is_evaluated:  # it is the object itself where the depsgraph has none
+        return "UNKNOWN", "it is hidden in the viewports; show it to see what a render takes it as"
     parts = [_own(evaluated, depsgraph), *_made(evaluated, depsgraph)]
     shown = [part for part in parts if part[0] != "NONE" and part[1] != _NO_FACES] or parts[:1]
     return shown[0][0], "; ".join(reason for _, reason in shown)

@@ -13,7 +13,7 @@ from .object_visibility import is_seen
 #: Types of objects whose faces can stand for a shape.
 SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
-NAMES = {identifier: name for identifier, name, _ in PRIMITIVES} | {"NONE": "Nothing"}
+NAMES = {identifier: name for identifier, name, _ in PRIMITIVES} | {"NONE": "Nothing", "UNKNOWN": "Not known"}
 
 #: What objects were taken as, by session_uid, until anything changes: a panel is drawn far more often.
 _described = {}

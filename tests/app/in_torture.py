@@ -10,7 +10,9 @@ are the scene and its picture; with `show`, fresh.npy is the picture of end.blen
 else.
 """
 
+import faulthandler
 import json
+import signal
 import sys
 import time
 from inspect import isgenerator
@@ -22,6 +24,7 @@ from mathutils import Quaternion
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import addon
+from addon import viewport_scenes
 from tests.app.live_view import Screen, fill_window, point_at_view, run_in_window, view_parts
 from tests.app.torture_edits import FORGETTING, Edits, operate, spaces, start_scene
 
@@ -34,6 +37,7 @@ MOST = 120.0  # seconds until it must be
 BETWEEN_CHECKS = 25  # steps at most
 WORTH_A_CHECK = 4  # steps, before something that makes the view begin anew anyway, so that nothing stale gets away
 DIFFERENT = 12  # of 255: a pixel that differs by more is another one
+LAST_SAMPLES = 16  # of the picture that another application shows too, with other noise
 ALLOWED = 0.002  # part of the pixels: edges that tie
 
 screen = Screen()
@@ -55,11 +59,16 @@ def keep_settings():
         space.shading.type = "RENDERED"
 
 
+def settled():
+    """Whether rendered views have nothing to load. While another thread prepares it, nothing is drawn."""
+    return all(scene.settled for scene in viewport_scenes._scenes.values() if scene.sessions)
+
+
 def picture():
     """The largest viewport at rest."""
     yield from point_at_view()
     view_parts()["area"].tag_redraw()
-    yield from screen.rest(REST, MOST)
+    yield from screen.rest(REST, MOST, settled)
     return (yield from screen.picture())
 
 
@@ -153,6 +162,9 @@ def finish(step):
         operate(bpy.ops.screen.region_quadview)
     yield from fill_window()
     look_at_all()
+    scene = bpy.context.scene
+    scene.conic.preview_samples = LAST_SAMPLES
+    scene.frame_set(scene.frame_current)  # as opening the file does: what is animated and was moved goes back
     np.save(FOLDER / "end.npy", (yield from picture()))
     bpy.ops.wm.save_as_mainfile(filepath=str(FOLDER / "end.blend"), copy=True)
     log(end=step)
@@ -178,6 +190,7 @@ def tell(failed=""):
     temporary.rename(FOLDER / "end.json")
 
 
+faulthandler.register(signal.SIGUSR1)  # test_torture.py sends it where nothing happens any more
 addon.register()
 if WHAT == "show":
     run_in_window(show(), TICK, tell)

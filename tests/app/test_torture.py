@@ -15,6 +15,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import sys
 import time
 from pathlib import Path
@@ -65,7 +66,11 @@ def run_in_window(folder, name, *arguments):
             if size != length:
                 grew, length = time.monotonic(), size
             if process.poll() is not None or time.monotonic() - grew > SILENCE:
-                how = "hangs" if process.poll() is None else f"ended with code {process.poll()}"
+                how = f"ended with code {process.poll()}"
+                if process.poll() is None:
+                    how = "hangs"
+                    process.send_signal(signal.SIGUSR1)  # it says where its threads are
+                    time.sleep(2.0)
                 pytest.fail(f"Blender {how} at {last_steps(steps)} of {folder}; it said:\n{log.read_text()[-6000:]}")
             time.sleep(0.2)
     return json.loads(end.read_text()) + complaints(log)

@@ -199,3 +199,42 @@ def test_a_window_closes_while_the_view_traces(rested):
     rested.run(f"bpy.context.scene.conic.preview_samples = {samples}")
     rested.rest()
     assert far(before, ball(rested.picture("windows closed"), RED)) < 0.5
+
+
+@pytest.mark.parametrize("entry", ["FRAGMENT", "COMPUTE"])
+def test_pictures_are_of_what_was_loaded_last(rested, entry):
+    """A viewport draws in a GPU context of its own, and goes on in its window's. What each has bound of a scene that is
+    freed meanwhile must not come back when the next one's textures get its numbers."""
+    rested.run("bpy.context.scene.conic.entry = entry", entry=entry)
+    rested.rest()
+    rested.run("""
+        import random
+
+        numbers, found = random.Random(2), []
+        background = bpy.context.scene.world.node_tree.nodes["Background"]
+        before = tuple(background.inputs["Color"].default_value), background.inputs["Strength"].default_value
+        background.inputs["Strength"].default_value = 1.0
+        bpy.data.objects["Plane"].hide_viewport = True
+        shown = next(iter(viewport_scenes._scenes.values()))
+
+        def edit():
+            "Another world, seen at once: nothing is drawn between redraws meanwhile."
+            version, color = shown.loaded.version, [numbers.random() for _ in range(3)]
+            background.inputs["Color"].default_value = (*color, 1.0)
+            while shown.loaded.version == version or not shown.settled:
+                with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+                    bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
+            return color
+    """)
+    for number in range(20):
+        color = rested.run("result = [edit() for _ in range(edits)][-1]", edits=1 + number % 4)
+        rested.wait_until(lambda: rested.run("result = all(s.picture.finished for s in shown.sessions)"))
+        sky = rested.run("result = [s.picture.session.pixels()[-3, 3, :3].tolist() for s in shown.sessions]")
+        np.testing.assert_allclose(sky, [color], rtol=0.01, err_msg=f"round {number}")
+    rested.run("""
+        background.inputs["Color"].default_value, background.inputs["Strength"].default_value = before
+        bpy.data.objects["Plane"].hide_viewport = False
+        bpy.context.scene.conic.entry = "AUTO"
+        del shown
+    """)
+    rested.rest()

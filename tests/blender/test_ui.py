@@ -262,6 +262,18 @@ def test_object_panel_shows_the_settings_of_each_kind_of_object(name, settings):
     assert drawn.text[0].startswith("Rendered as: ") and len(drawn.text) > 1
 
 
+@pytest.mark.parametrize("name", ["points", "hair", "curve", "text", "instances", "edges"])
+def test_object_panel_of_a_hidden_object(name):
+    """Blender has not evaluated it, and asking for what it makes raises."""
+    obj = bpy.context.view_layer.objects.active = objects_that_rays_meet()[name]
+    obj.hide_viewport = True
+    bpy.context.view_layer.update()
+    assert described().text[0] == "Rendered as: Not known"
+    obj.hide_viewport = False
+    bpy.context.view_layer.update()
+    assert described().text[0] != "Rendered as: Not known"
+
+
 def test_nothing_that_rays_cannot_meet_has_a_panel_of_its_shape():
     bpy.context.scene.render.engine = "CONIC"
     for data in (None, bpy.data.lights.new("light", "POINT"), bpy.data.cameras.new("camera")):

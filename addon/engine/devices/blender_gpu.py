@@ -6,6 +6,7 @@ import re
 import sys
 import tempfile
 from collections import OrderedDict
+from functools import cache
 
 import numpy as np
 
@@ -44,9 +45,23 @@ def _program(source, compiled):
     return _PROGRAMS[source]
 
 
+@cache
+def blank_texture():
+    """A texture that lasts, to be bound in the place of those that do not, after each draw.
+
+    A texture that is freed in one of Blender's GPU contexts, of which a viewport has one and its window another, stays
+    bound in the others. The next one that is made may get its number, and where that is bound, Mesa's drivers find the
+    number there already and go on with the old one.
+    """
+    import gpu
+
+    return gpu.types.GPUTexture((1, 1), format="RGBA32F")
+
+
 def free_programs():
-    """Give all programs back to Blender while it can still take them: before its end."""
+    """Give all that is shared back to Blender while it can still take it: before its end."""
     _PROGRAMS.clear()
+    blank_texture.cache_clear()
 
 
 class BlenderDevice:
@@ -116,6 +131,7 @@ class BlenderDevice:
                     shader.uniform_int(name, value)
                 batch.draw(shader)
             finally:
+                shader.uniform_sampler("texels_data", blank_texture())
                 self._gpu.shader.unbind()
                 state.scissor_test_set(False)
         self._copied = source  # until the next copy: the GPU may not have read it yet
@@ -212,6 +228,7 @@ class BlenderDevice:
                 self._bind(source, shader, textures, block)
                 batch.draw(shader)
             finally:
+                self._bind_textures(source, shader, dict.fromkeys(source.textures, blank_texture()))
                 self._gpu.shader.unbind()
                 state.blend_set("NONE")
                 state.scissor_test_set(False)
@@ -220,13 +237,14 @@ class BlenderDevice:
         tile, groups = tile_and_groups(rectangle)
         try:
             self._bind(source, shader, textures, block)
-            for name, texture in zip(source.outputs, target.colors, strict=True):
-                shader.image(f"{name}_image", texture)
+            self._bind_outputs(source, shader, target.colors)
             shader.uniform_int("tile", tile)
             # Blender puts a barrier after it, for textures and images. None can be had for frame buffers, from which
             # `read` reads; drivers keep this order nevertheless.
             self._gpu.compute.dispatch(shader, *groups, 1)
         finally:
+            self._bind_textures(source, shader, dict.fromkeys(source.textures, blank_texture()))
+            self._bind_outputs(source, shader, [blank_texture()] * len(source.outputs))
             self._gpu.shader.unbind()
 
     def _bind(self, source, shader, textures, block):
@@ -234,10 +252,20 @@ class BlenderDevice:
         shader.bind()
         if source.uniform_struct:
             shader.uniform_block("frame", block)
+        self._bind_textures(source, shader, textures)
+
+    def _bind_textures(self, source, shader, textures):
+        """Have the data textures of a program read from `textures` by name."""
         images = loaded_as_images(source, self.name)
         for name in source.textures:
             bind = shader.image if name in images else shader.uniform_sampler
             bind(f"{name}_data", textures[name])
+
+    @staticmethod
+    def _bind_outputs(source, shader, colors):
+        """Have what a compute program puts out written to `colors`, a texture each."""
+        for name, texture in zip(source.outputs, colors, strict=True):
+            shader.image(f"{name}_image", texture)
 
     def attachment(self, target, attachment):
         return target.colors[attachment]
