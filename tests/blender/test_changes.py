@@ -7,7 +7,7 @@ import pytest
 
 from addon import viewport_log
 from addon.engine.changes import Change
-from tests.blender.viewport_stand_in import StandIn, draws, mark, records
+from tests.blender.viewport.stand_in import StandIn, draws, mark, records
 
 pytestmark = pytest.mark.skipif(not hasattr(gpu, "init"), reason="no GPU context in the background before Blender 5.2")
 

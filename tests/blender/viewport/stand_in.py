@@ -103,3 +103,16 @@ def loads():
 
 def draws():
     return records(viewport_log.Draw)
+
+
+def sphere_at(pixels):
+    """Mean column and area of what is darker than the sky, in pixels."""
+    dark = pixels[..., 0] < 0.5
+    return np.nonzero(dark)[1].mean() + 0.5, dark.sum()
+
+
+def add_lamp():
+    """A point lamp at the origin."""
+    lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "POINT"))
+    bpy.context.collection.objects.link(lamp)
+    return lamp

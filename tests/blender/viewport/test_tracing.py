@@ -3,10 +3,13 @@
 import time
 from types import SimpleNamespace
 
+import bpy
 import pytest
 
 from addon import viewport_tracing
 from addon.viewport_pace import MOST, MOST_AT_ONCE, MOST_UNSEEN, RedrawPace
+from addon.viewport_picture import STEPS, ViewportPicture
+from tests.blender.viewport.stand_in import draws
 
 
 @pytest.fixture
@@ -135,3 +138,23 @@ def test_a_viewport_that_is_gone_is_not_traced(tracing):
     tracing.go_on(session, quiet=False)
     del session
     assert tracing._trace() is None
+
+
+def test_a_redraw_is_asked_for_when_there_is_something_to_see(view, monkeypatch):
+    """The whole picture first, and the last sample; slices that give neither ask for none until it is time."""
+    bpy.context.scene.conic.preview_samples = 3
+    view.settle()
+    view.look_from(1.0)
+    with monkeypatch.context() as patch:
+        patch.setattr(ViewportPicture, "_choose_step", lambda picture, seconds: STEPS[-1])
+        view.redraw()
+    assert draws()[-1].step > 1
+    shown = []
+    while not view.session.picture.finished:
+        before = view.engine.redraws
+        while view.session.trace():
+            assert view.engine.redraws == before
+        assert view.engine.redraws == before + 1
+        shown.append((view.session.picture.step, view.session.picture.sample))
+        view.session.pace.begin()  # the redraw
+    assert shown[-1] == (1, 3) and (1, 1) in shown
