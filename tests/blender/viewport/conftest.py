@@ -4,7 +4,7 @@ import bpy
 import gpu
 import pytest
 
-from addon import viewport_log
+from addon.viewport import history
 from tests.blender.viewport.stand_in import StandIn, mark
 
 
@@ -25,7 +25,7 @@ def view(gpu_context):
     bpy.context.scene.conic.preview_samples = 2
     bpy.context.scene.conic.preview_frame_seconds = 0.2
     world.cycles_visibility.diffuse = False  # it lights nothing
-    viewport_log.records.clear()
+    history.records.clear()
     bpy.app.handlers.depsgraph_update_post.append(mark)
     view = StandIn()
     yield view

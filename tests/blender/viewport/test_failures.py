@@ -3,11 +3,11 @@
 import bpy
 import pytest
 
-from addon import viewport_session
 from addon.engine import DeviceError, LoadedScene, SceneError
 from addon.engine.devices.blender_gpu import BlenderDevice
 from addon.sync.scene_reader import SceneReader
-from addon.viewport_picture import ViewportPicture
+from addon.viewport import session
+from addon.viewport.picture import ViewportPicture
 from tests.blender.viewport.stand_in import WIDTH, add_lamp, draws, sphere_at
 
 
@@ -15,7 +15,7 @@ def test_a_viewport_without_a_gpu_says_so(view, monkeypatch):
     def scene_of(*_arguments):
         raise DeviceError("Blender has no GPU context here")
 
-    monkeypatch.setattr(viewport_session, "scene_of", scene_of)
+    monkeypatch.setattr(session, "scene_of", scene_of)
     assert not view.redraw()
     assert view.engine.text == "Blender has no GPU context here"
 
@@ -42,7 +42,7 @@ def test_an_error_is_shown_and_the_next_change_tries_again(view, monkeypatch):
 )
 @pytest.mark.parametrize(
     "owner, name",
-    [(SceneReader, "read"), (LoadedScene, "prepare"), (LoadedScene, "apply"), (viewport_session, "view_of")],
+    [(SceneReader, "read"), (LoadedScene, "prepare"), (LoadedScene, "apply"), (session, "view_of")],
 )
 def test_a_defect_is_shown_and_its_traceback_logged_once(view, monkeypatch, caplog, owner, name, error, words):
     def fail(*_arguments, **_settings):

@@ -4,11 +4,11 @@ import bpy
 import numpy as np
 import pytest
 
-from addon import viewport_log
 from addon.engine import LoadedScene, SceneError, bvh
 from addon.engine.changes import Change
 from addon.engine.tree_packing import QUICK_FROM
 from addon.operators.nff_shapes import new_point_cloud
+from addon.viewport import history
 from tests.blender.viewport.gate import Gate
 from tests.blender.viewport.stand_in import draws, loads, records
 
@@ -57,7 +57,7 @@ def test_good_trees_are_not_given_up_for_an_edit_that_changes_nothing(view, crow
     assert gate.reached.wait(60.0)
     bpy.context.scene.conic.preview_samples = 5  # no other picture
     bpy.context.object.update_tag()
-    while len(records(viewport_log.Load)) < 2 or view.redraw():
+    while len(records(history.Load)) < 2 or view.redraw():
         view.redraw()
     assert draws()[-1].sample == 5 and draws()[-1].finished
     gate.opened.set()

@@ -7,16 +7,16 @@ import bpy
 import numpy as np
 import pytest
 
-from addon import viewport_kept, viewport_scenes
+from addon.viewport import kept_scenes, scenes
 from tests.blender.viewport.stand_in import StandIn, loads, mark
 
 
 @pytest.fixture
 def kept(view, monkeypatch):
-    """viewport_kept as in a window, but that nobody looks."""
-    monkeypatch.setattr(viewport_kept, "keep", lambda scene: viewport_kept._kept.update({scene: time.monotonic()}))
-    yield viewport_kept
-    viewport_kept._kept.clear()
+    """kept_scenes as in a window, but that nobody looks."""
+    monkeypatch.setattr(kept_scenes, "keep", lambda scene: kept_scenes._kept.update({scene: time.monotonic()}))
+    yield kept_scenes
+    kept_scenes._kept.clear()
 
 
 def test_who_comes_back_finds_the_scene_and_what_has_changed(kept, view):
@@ -61,8 +61,8 @@ def test_scenes_are_not_kept(kept, view, end):
     if end == "render":
         kept._before_render()
     elif end == "load":
-        viewport_scenes._begin_loading()
-        viewport_scenes._end_replacing()
+        scenes._begin_loading()
+        scenes._end_replacing()
     else:
         bpy.context.scene.render.engine = "BLENDER_WORKBENCH"
     assert kept._look() is None and not scene()

@@ -5,9 +5,9 @@ import time
 import bpy
 import pytest
 
-from addon import viewport_scenes
 from addon.engine import LoadedScene, loaded_scene
 from addon.engine.packing import pack
+from addon.viewport import scenes
 from tests.blender.viewport.gate import Gate
 from tests.blender.viewport.stand_in import WIDTH, loads, sphere_at
 
@@ -38,7 +38,7 @@ def test_a_viewport_may_close_while_its_scene_is_prepared(view, monkeypatch):
     assert view.session.waiting
     view.close()
     gate.opened.set()
-    assert not viewport_scenes._scenes
+    assert not scenes._scenes
 
 
 def test_a_viewport_that_pauses_hears_once_of_what_has_been_prepared(view, monkeypatch):
@@ -47,12 +47,12 @@ def test_a_viewport_that_pauses_hears_once_of_what_has_been_prepared(view, monke
     bpy.context.object.location.x = 1.0
     view.redraw()
     bpy.context.scene.conic.preview_pause = True
-    assert viewport_scenes._look() is not None
+    assert scenes._look() is not None
     gate.opened.set()
     while not view.session.scene.prepared:
         time.sleep(0.001)
     before = view.engine.redraws
-    assert viewport_scenes._look() is None and view.engine.redraws == before + 1
+    assert scenes._look() is None and view.engine.redraws == before + 1
     bpy.context.scene.conic.preview_pause = False
     assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 + WIDTH / 6, abs=0.5)
 
@@ -69,8 +69,8 @@ def test_what_an_undo_has_replaced_is_not_prepared_to_the_end(view, monkeypatch)
     gate = Gate(monkeypatch, loaded_scene, "pack")
     bpy.context.object.location.x = 1.0
     view.redraw()
-    viewport_scenes._begin_replacing()
-    viewport_scenes._end_replacing()
+    scenes._begin_replacing()
+    scenes._end_replacing()
     bpy.context.object.location.x = -1.0
     gate.opened.set()
     assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 - WIDTH / 6, abs=0.5)

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
-from addon.viewport_picture import STEPS
+from addon.viewport.picture import STEPS
 from tests.blender.viewport.stand_in import HEIGHT, WIDTH, draws, sphere_at
 
 

@@ -7,9 +7,9 @@ import bpy
 import numpy as np
 import pytest
 
-from addon import viewport_scenes, viewport_session
 from addon.engine.devices.blender_gpu import BlenderDevice
 from addon.sync.scene_reader import SceneReader
+from addon.viewport import scenes, session
 from tests.blender.viewport.stand_in import HEIGHT, WIDTH, draws, loads, sphere_at
 
 
@@ -82,7 +82,7 @@ def test_a_scene_is_freed_with_its_last_viewport(view, second):
         view.close()
         assert loaded() is not None and sphere_at(second.settle())[1] > 0
         second.close()
-        assert loaded() is None and not viewport_scenes._scenes, "at once, without a search for garbage"
+        assert loaded() is None and not scenes._scenes, "at once, without a search for garbage"
     finally:
         gc.enable()
 
@@ -93,7 +93,7 @@ def test_undo_and_new_files_read_anew(view, monkeypatch):
     monkeypatch.setattr(SceneReader, "forget", lambda self: forgotten.append(self))
     for name in ("undo_post", "redo_post", "load_post"):
         for handler in getattr(bpy.app.handlers, name):
-            if handler.__module__ == viewport_scenes.__name__:
+            if handler.__module__ == scenes.__name__:
                 handler(bpy.context.scene, None)
     assert len(forgotten) == 3 and not view.session.scene.settled
     view.settle()
@@ -104,17 +104,17 @@ def test_an_add_on_that_was_disabled_by_a_file_hears_of_changes_when_it_is_enabl
     """As by Load Factory Settings, which takes its handlers away in between."""
     view.settle()
     for handler in list(bpy.app.handlers.load_pre):
-        if handler.__module__ == viewport_scenes.__name__:
+        if handler.__module__ == scenes.__name__:
             handler("", None)
-    viewport_scenes.unregister()
-    viewport_scenes.register()
+    scenes.unregister()
+    scenes.register()
     bpy.context.object.location.x = 1.0
     assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 + WIDTH / 6, abs=0.5)
 
 
 def test_statistics_are_published_once_for_what_is_loaded(view, monkeypatch):
     published = []
-    monkeypatch.setattr(viewport_session, "publish", published.append)
+    monkeypatch.setattr(session, "publish", published.append)
     view.settle()
     view.look_from(1.0)
     view.settle()

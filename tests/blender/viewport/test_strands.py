@@ -5,7 +5,7 @@ import time
 import bpy
 import pytest
 
-from addon import viewport_log
+from addon.viewport import history
 from tests.blender.viewport.stand_in import StandIn, loads
 
 
@@ -35,7 +35,7 @@ def test_strands_are_cut_for_the_nearest_of_all_views(gpu_context, first):
     bpy.ops.curve.primitive_bezier_circle_add(radius=2.0)
     bpy.context.object.conic.strand_radius = 0.01
     bpy.context.scene.conic.preview_samples = 2
-    viewport_log.records.clear()
+    history.records.clear()
     far, near = views = StandIn(), StandIn()
     far.look_from(0.0)
     near.look_from(0.0, width=0.3)

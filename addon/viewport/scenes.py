@@ -8,16 +8,16 @@ from functools import partial
 
 import bpy
 
-from . import viewport_kept, viewport_log
-from .engine import LoadedScene
-from .engine.changes import Change
-from .engine.timing import timed
+from ..engine import LoadedScene
+from ..engine.changes import Change
+from ..engine.timing import timed
+from ..render_session import blender_device, is_defect, sentence_of
+from ..statistics import Statistics
+from ..sync.scene_reader import SceneReader
+from ..sync.scene_sync import SyncStatistics, sync_settings
+from . import history, kept_scenes
 from .log_reporter import LogReporter
-from .render_session import blender_device, is_defect, sentence_of
-from .statistics import Statistics
-from .sync.scene_reader import SceneReader
-from .sync.scene_sync import SyncStatistics, sync_settings
-from .viewport_renewal import Renewal
+from .renewal import Renewal
 
 _LOOK_SECONDS = 0.01  # between two looks whether a scene has been prepared
 _SHOWN_TYPES = sorted(
@@ -84,7 +84,7 @@ class ViewportScene:
         if not self.sessions:
             self._distrust()
         self.sessions.add(session)
-        viewport_kept.keep(self)
+        kept_scenes.keep(self)
 
     def _distrust(self):
         """Read all of it anew. What comes out equal is not loaded again."""
@@ -118,7 +118,7 @@ class ViewportScene:
         except Exception as error:  # raised, it would be so at every redraw
             self._drop()
             self.error = explain(error, self.report)
-            viewport_log.records.append(viewport_log.Load(error=self.error))
+            history.records.append(history.Load(error=self.error))
 
     def improve(self, view):
         """A picture of a `View` is there. If nothing else is to be done, cut strands finer that are too coarse for it,
@@ -166,7 +166,7 @@ class ViewportScene:
 
     @staticmethod
     def _log(update, spent):
-        viewport_log.records.append(viewport_log.Load(update.change, dict(update.bytes), spent | update.seconds))
+        history.records.append(history.Load(update.change, dict(update.bytes), spent | update.seconds))
 
     def tag_redraw(self):
         """Have the viewports redrawn that show it."""
@@ -279,7 +279,7 @@ def _begin_replacing(*_arguments):
 @bpy.app.handlers.persistent
 def _begin_loading(*_arguments):
     """Opening a file: nothing of this one comes back."""
-    viewport_kept.let_go()
+    kept_scenes.let_go()
     _begin_replacing()
 
 
@@ -306,12 +306,12 @@ def register():
     _replacing = False  # where factory settings disabled the add-on, nobody has told it of the end
     for handlers, function in _handlers():
         handlers.append(function)
-    viewport_kept.register()
+    kept_scenes.register()
 
 
 def unregister():
     for handlers, function in _handlers():
         handlers.remove(function)
-    viewport_kept.unregister()
+    kept_scenes.unregister()
     if bpy.app.timers.is_registered(_look):
         bpy.app.timers.unregister(_look)

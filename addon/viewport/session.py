@@ -7,16 +7,16 @@ import weakref
 
 import bpy
 
-from . import viewport_log, viewport_tracing
-from .engine import Session
+from ..engine import Session
+from ..statistics import primitives_text, publish
+from ..wording import counted
+from . import history, tracing
+from .display import Display
 from .log_reporter import LogReporter
-from .statistics import primitives_text, publish
-from .viewport_display import Display
-from .viewport_pace import MOST, RedrawPace
-from .viewport_picture import ViewportPicture
-from .viewport_scenes import explain, scene_of
-from .viewport_view import view_of
-from .wording import counted
+from .pace import MOST, RedrawPace
+from .picture import ViewportPicture
+from .scenes import explain, scene_of
+from .view import view_of
 
 _TRACING = 0.8  # of a redraw's seconds; the rest is for showing what was traced, and for Blender
 _LEAST = 0.5  # of a redraw's seconds, where what came before took long
@@ -141,15 +141,15 @@ class ViewportSession:
         self._shown = picture.sample
         self._tracing = not (picture.finished or self.paused)
         if self._tracing:
-            viewport_tracing.go_on(self, quiet=began)
+            tracing.go_on(self, quiet=began)
         if picture.sample and not self.paused:
             self.scene.improve(view)
         return began
 
     def _log(self, began, seconds):
         picture = self.picture
-        record = viewport_log.Draw(began, picture.keeps, picture.step, picture.sample, picture.finished, seconds)
-        viewport_log.records.append(record)
+        record = history.Draw(began, picture.keeps, picture.step, picture.sample, picture.finished, seconds)
+        history.records.append(record)
 
     def _publish(self):
         """The first picture of what is loaded is there: show what it is made of and what it cost."""

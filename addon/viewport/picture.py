@@ -3,8 +3,8 @@
 
 import time
 
-from .viewport_display import Layer
-from .viewport_pace import MOST
+from .display import Layer
+from .pace import MOST
 
 #: How many finished pixels one of a picture is wide, from the finest on. None at 2: it would cost a quarter of the real
 #: one, for little.
