@@ -1,5 +1,8 @@
 """What goes wrong is told in the viewport and in the log, and the next change or redraw tries again."""
 
+import gc
+import weakref
+
 import bpy
 import pytest
 
@@ -58,6 +61,27 @@ def test_a_defect_is_shown_and_its_traceback_logged_once(view, monkeypatch, capl
     assert len(traces) == (0 if isinstance(error, MemoryError) else 1)
     bpy.context.object.location.x = 0.0
     assert sphere_at(view.settle())[1] > 0
+
+
+@pytest.mark.parametrize("owner, name", [(SceneReader, "read"), (LoadedScene, "prepare"), (LoadedScene, "apply")])
+def test_a_scene_that_failed_is_freed_with_its_viewport(view, monkeypatch, owner, name):
+    """At once: a search for garbage may be in a thread that must not free textures."""
+
+    def fail(*_arguments, **_settings):
+        raise SceneError("this cannot be")
+
+    view.settle()
+    monkeypatch.setattr(owner, name, fail)
+    bpy.context.object.location.x = 1.0
+    view.settle()
+    assert view.session.error == "this cannot be"
+    scene = weakref.ref(view.session.scene)
+    gc.disable()
+    try:
+        view.close()
+        assert scene() is None
+    finally:
+        gc.enable()
 
 
 def test_a_picture_that_there_is_no_memory_for_is_tried_again(view, monkeypatch):
