@@ -15,7 +15,7 @@ from .display import Display
 from .log_reporter import LogReporter
 from .pace import MOST, RedrawPace
 from .picture import ViewportPicture
-from .scenes import explain, scene_of
+from .scenes import scene_of
 from .view import view_of
 
 _TRACING = 0.8  # of a redraw's seconds; the rest is for showing what was traced, and for Blender
@@ -91,7 +91,7 @@ class ViewportSession:
 
     def _fail(self, error):
         """What was drawn has ended half way: the next redraw begins anew."""
-        self.error = explain(error, self.scene.report if self.scene else LogReporter())
+        self.error = (self.scene.report if self.scene else LogReporter()).explain(error)
         self.picture, self._tracing = None, False
 
     def _renew(self, depsgraph, view, space):

@@ -7,7 +7,7 @@ import pytest
 
 from addon.engine import LoadedScene, loaded_scene
 from addon.engine.packing import pack
-from addon.viewport import scenes
+from addon.viewport import scenes, waiting
 from tests.blender.viewport.gate import Gate
 from tests.blender.viewport.stand_in import WIDTH, loads, sphere_at
 
@@ -47,12 +47,12 @@ def test_a_viewport_that_pauses_hears_once_of_what_has_been_prepared(view, monke
     bpy.context.object.location.x = 1.0
     view.redraw()
     bpy.context.scene.conic.preview_pause = True
-    assert scenes._look() is not None
+    assert waiting._look() is not None
     gate.opened.set()
     while not view.session.scene.prepared:
         time.sleep(0.001)
     before = view.engine.redraws
-    assert scenes._look() is None and view.engine.redraws == before + 1
+    assert waiting._look() is None and view.engine.redraws == before + 1
     bpy.context.scene.conic.preview_pause = False
     assert sphere_at(view.settle())[0] == pytest.approx(WIDTH / 2 + WIDTH / 6, abs=0.5)
 
