@@ -91,31 +91,32 @@ class ViewportScene:
         What takes no longer than `patience` to prepare shows at once. Where that fails, what was loaded stays, and
         `error` tells why until the scene is read again."""
         try:
-            if self._renewal and self._renewal.stopped and self._renewal.wait(0.0):
-                self._drop_renewal()
-            if self._better and self._better.stopped:
-                self._drop_better()
+            self._drop_stopped()
             if self.stale and not self._renewal:
                 self._renewal = self._read(depsgraph, view, space)
                 self._renewal.wait(patience)
-            if self._renewal and not self._renewal.wait(0.0):
-                waiting.watch(self)
-            elif self._renewal:
-                self._upload(seconds)
+            if self._renewal:
+                if self._renewal.wait(0.0):
+                    self._upload(seconds)
             elif self._better and self._better.wait(0.0):
                 self._upload_better(seconds)
         except Exception as error:  # raised, it would be so at every redraw
-            self._drop()
+            self._drop_renewal()
+            self._drop_better()
             self.error = self.report.explain(error)
             history.records.append(history.Load(error=self.error))
+        if self.preparing:
+            waiting.watch(self)
 
     def improve(self, view):
         """A picture of a `View` is there. If nothing else is to be done, cut strands finer that are too coarse for it,
-        and build good trees in the place of those that were built quickly."""
-        if self.settled and not self.error and self.reader.is_too_coarse(view.camera, view.size[1]):
+        or build good trees in the place of those that were built quickly."""
+        if not self.settled or self.error:
+            return
+        if self.reader.is_too_coarse(view.camera, view.size[1]):
             self.stale = True
             self.tag_redraw()
-        if self.loaded.can_improve and self.settled and not (self._better or self.error):
+        elif self.loaded.can_improve and not self._better:
             self._better = Renewal(self.loaded, self.loaded.prepare_better)
             waiting.watch(self)
 
@@ -162,10 +163,12 @@ class ViewportScene:
         for session in self.sessions:
             session.tag_redraw()
 
-    def _drop(self):
-        """Forget what is under way."""
-        self._drop_renewal()
-        self._drop_better()
+    def _drop_stopped(self):
+        """Drop what was stopped. What was read goes on until its thread notices: so one at a time is prepared."""
+        if self._renewal and self._renewal.stopped and self._renewal.wait(0.0):
+            self._drop_renewal()
+        if self._better and self._better.stopped:
+            self._drop_better()
 
     def _drop_renewal(self):
         if self._renewal:
@@ -179,6 +182,7 @@ class ViewportScene:
 
     def __del__(self):
         """Free what the GPU holds here and now: the last reference may be that of another thread."""
-        self._drop()
+        self._drop_renewal()
+        self._drop_better()
         if self.loaded is not None:  # there was a GPU
             self.loaded.free()

@@ -1,5 +1,7 @@
 """Trees of large scenes are built quickly first; good ones follow once a picture is there."""
 
+import time
+
 import bpy
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ from addon.engine import LoadedScene, SceneError, bvh
 from addon.engine.changes import Change
 from addon.engine.tree_packing import QUICK_FROM
 from addon.operators.nff_shapes import new_point_cloud
-from addon.viewport import history
+from addon.viewport import history, waiting
 from tests.blender.viewport.gate import Gate
 from tests.blender.viewport.stand_in import draws, loads, records
 
@@ -84,6 +86,25 @@ def test_the_work_on_good_trees_outlives_an_edit(view, crowd, monkeypatch):
         bpy.context.evaluated_depsgraph_get(), 8, 8, camera=view.session.picture.view.camera
     )
     assert not any(geometry.tree for geometry in (scene.shapes, *(placed.geometry for placed in scene.instances)))
+
+
+def test_who_edits_meanwhile_hears_of_good_trees(view, crowd, monkeypatch):
+    """The edit is what they wait for no longer: the trees are."""
+    gate = Gate(monkeypatch, bvh, "build", holds=is_large)
+    while view.redraw() or not draws()[-1].finished:
+        pass
+    assert gate.reached.wait(60.0)
+    bpy.context.object.location.x = 1.0
+    bpy.context.view_layer.update()
+    waiting._look()  # tells of the edit
+    while len(loads()) < 2 or view.redraw():
+        view.redraw()
+    gate.opened.set()
+    while not view.session.scene.prepared:
+        time.sleep(0.001)
+    before = view.engine.redraws
+    waiting._look()
+    assert view.engine.redraws == before + 1
 
 
 def test_good_trees_that_cannot_be_built_are_reported_and_not_tried_again(view, crowd, monkeypatch):
