@@ -30,7 +30,6 @@ class ViewportSession:
         self.display, self.pace = Display(), RedrawPace()
         self.scene = None  # the `ViewportScene`
         self.picture = None  # the `ViewportPicture` of what is loaded
-        self.version = None  # of what is loaded, in the picture
         self.error = ""
         self.paused = False
         self._tracing = False  # whether there is something left for `trace`
@@ -75,7 +74,7 @@ class ViewportSession:
     def trace(self):
         """Go on with the picture between redraws, until there is something to see: a redraw is asked for then. Whether
         there is more to trace before. Call it in the main thread, where the GPU context is active."""
-        if not self._tracing or self.version != self.scene.loaded.version:
+        if not self._tracing or not self.picture.is_of_what_is_loaded:
             return False  # nothing is left, or a redraw will follow
         self.pace.go_on()
         try:
@@ -117,23 +116,20 @@ class ViewportSession:
         if scene is not self.scene:
             if self.scene:
                 self.scene.sessions.discard(self)
-            self.scene, self.picture, self.version = scene, None, None
+            self.scene, self.picture = scene, None
             scene.attach(self)
 
     def _show(self, view, started):
         """Show what is there, of a new view what can be traced at once; whether the picture has begun anew. `started`:
         when this redraw has."""
-        loaded = self.scene.loaded
         if self.picture is None:
-            self.picture = ViewportPicture(Session(self.scene.device, loaded))
+            self.picture = ViewportPicture(Session(self.scene.device, self.scene.loaded))
         picture = self.picture
-        same_scene = self.version == loaded.version
-        began = not same_scene or picture.view is None or picture.view.key != view.key
+        began = not picture.is_of(view)
         if began:
             self.pace.changed()
-            self.version = loaded.version
             spent = time.perf_counter() - started
-            picture.begin(view, max(_TRACING * self._frame - spent, _LEAST * self._frame), same_scene)
+            picture.begin(view, max(_TRACING * self._frame - spent, _LEAST * self._frame))
             self._publish()
         elif bpy.app.background and not self.paused:
             picture.advance(self._frame)
@@ -163,15 +159,15 @@ class ViewportSession:
 
     def _tell(self):
         """Show in the viewport how far it is, and that there is something to read in the console."""
+        if self.picture and not self.error:
+            for warning in (*self.scene.loaded.warnings, *self.picture.session.warnings):
+                self.scene.report("WARNING", warning)
         text = self.error or " | ".join(self._state())
         self._engine().update_stats("Conic", text)
 
     def _state(self):
         """How far it is, in some words each."""
-        report = self.scene.report
         if self.picture:
-            for warning in (*self.scene.loaded.warnings, *self.picture.session.warnings):
-                report("WARNING", warning)
             drawn = self.scene.loaded.drawn
             yield f"Sample {min(self.picture.sample + 1, drawn.settings.samples)}/{drawn.settings.samples}"
             yield primitives_text(drawn.packed.statistics["primitives"])
@@ -180,5 +176,5 @@ class ViewportSession:
             yield "Paused"
         elif not self.scene.settled:
             yield "Loading"
-        if report.warnings:
-            yield f"{counted(report.warnings, 'warning')}, see the console"
+        if warnings := self.scene.report.warnings:
+            yield f"{counted(warnings, 'warning')}, see the console"
