@@ -216,3 +216,8 @@ def with_nodes(nodes, name="host", data=None, **settings):
     obj = link(data or bpy.data.meshes.new(name), name, **settings)
     obj.modifiers.new("nodes", "NODES").node_group = nodes.tree
     return obj
+
+
+def parts(read):
+    """The primitives of a `Read` by kind."""
+    return {part.kind: part for _, part in read.geometry.kinds()}
