@@ -6,7 +6,7 @@ import textwrap
 import bpy
 
 from ..properties import PRIMITIVES
-from ..sync.objects import describe
+from ..sync.description import describe
 from .base import PropertiesPanel, as_rows
 from .object_visibility import is_seen
 
