@@ -8,6 +8,8 @@ import pytest
 from addon.engine import LoadedScene, loaded_scene
 from addon.engine.packing import pack
 from addon.viewport import scenes, waiting
+from addon.viewport.pace import MOST
+from addon.viewport.scene import ViewportScene
 from tests.blender.viewport.gate import Gate
 from tests.blender.viewport.stand_in import WIDTH, loads, sphere_at
 
@@ -89,3 +91,20 @@ def test_what_is_prepared_for_nobody_keeps_nothing_on_the_gpu(view, monkeypatch)
     view.close()
     assert not drawn.textures
     gate.opened.set()
+
+
+def test_without_a_picture_loading_may_take_longer_at_a_time(view, monkeypatch):
+    """Nobody waits for a redraw then."""
+    given, renew = [], ViewportScene.renew
+
+    def watch(scene, depsgraph, shown, space, seconds, patience):
+        given.append(seconds)
+        renew(scene, depsgraph, shown, space, seconds, patience)
+
+    monkeypatch.setattr(ViewportScene, "renew", watch)
+    view.redraw()
+    assert given == [MOST]
+    view.settle()
+    view.look_from(1.0)
+    view.redraw()
+    assert given[-1] < MOST
