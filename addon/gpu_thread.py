@@ -52,9 +52,12 @@ def call(function, *arguments, stopped):
     while not piece.done.wait(0.1):
         if stopped() and not piece.done.wait(0.4):
             raise StoppedError("rendering was stopped")
-    if piece.error is not None:
+    if piece.error is None:
+        return piece.result
+    try:
         raise piece.error
-    return piece.result
+    finally:
+        piece.error = None  # its traceback refers to this frame: nothing is freed in a circle
 
 
 def _pump():

@@ -40,7 +40,7 @@ RECOGNISE = (
 )
 
 PRIMITIVES = (
-    ("AUTO", "Automatic", "An exact shape where the mesh is recognised as one, else the mesh"),
+    ("AUTO", "Automatic", "An exact shape where the mesh is recognized as one, else the mesh"),
     ("MESH", "Mesh", "The triangles of the mesh, whatever its form"),
     ("SPHERE", "Sphere", "An exact sphere; an ellipsoid where the object is stretched"),
     ("CYLINDER", "Cylinder", "An exact cylinder along the object's Z axis"),

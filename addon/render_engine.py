@@ -3,10 +3,11 @@
 
 import bpy
 
-from . import gpu_thread, viewport_display, viewport_scenes, viewport_tracing
+from . import gpu_thread, viewport
 from .engine.devices import blender_gpu
 from .render_session import render_layer
-from .viewport_session import ViewportSession
+from .viewport import scenes
+from .viewport.session import ViewportSession
 
 
 class ConicRenderEngine(bpy.types.RenderEngine):
@@ -32,7 +33,7 @@ class ConicRenderEngine(bpy.types.RenderEngine):
         render_layer(self, depsgraph)
 
     def view_update(self, context, depsgraph):
-        viewport_scenes.mark(depsgraph)
+        scenes.mark(depsgraph)
 
     def view_draw(self, context, depsgraph):
         self.viewport = self.viewport or ViewportSession(self)
@@ -42,13 +43,11 @@ class ConicRenderEngine(bpy.types.RenderEngine):
 def register():
     bpy.utils.register_class(ConicRenderEngine)
     gpu_thread.register()
-    viewport_scenes.register()
+    viewport.register()
 
 
 def unregister():
     bpy.utils.unregister_class(ConicRenderEngine)
-    viewport_scenes.unregister()
-    viewport_tracing.unregister()
+    viewport.unregister()
     gpu_thread.unregister()
-    viewport_display.unregister()
     blender_gpu.free_programs()  # as the display shader: Python would free them after Blender's end

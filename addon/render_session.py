@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A final render: one view layer of one frame, in all its views, from Blender's data to the render result."""
 
-import os
 import time
 import traceback
 from dataclasses import replace
 
 import bpy
-import gpu
 import numpy as np
 
 from . import gpu_thread
-from .engine import ConicError, Session
-from .engine.devices.blender_gpu import BlenderDevice
+from .device import new_device
+from .engine import Session
 from .engine.timing import timed
+from .failures import is_defect, sentence_of
 from .statistics import Statistics, log_line, primitives_text, publish
 from .sync.camera import camera_of_render
 from .sync.scene_sync import SyncStatistics, sync_scene, sync_settings
@@ -22,42 +21,6 @@ STEP_SECONDS = 0.05 if bpy.app.background else 0.04  # between two looks at whet
 RESULT_SECONDS = 0.5  # between two showings of what is there so far
 PREVIEW_SAMPLES = 32  # of a small picture: the area lights of its scene are large
 _MEBIBYTE = 1024.0**2
-
-
-class WindowDevice(BlenderDevice):
-    """Blender's GPU in the main thread, whose context is now that of one window, now of another.
-
-    A frame buffer belongs to a context (its textures do not): each draw and each reading makes a new one.
-    """
-
-    def draw(self, program, target, *arguments):
-        self._renew(target)
-        super().draw(program, target, *arguments)
-
-    def read(self, target, *arguments):
-        self._renew(target)
-        return super().read(target, *arguments)
-
-    def _renew(self, target):
-        target.framebuffer = gpu.types.GPUFrameBuffer(color_slots=target.colors)
-
-
-def new_device():
-    """A device on Blender's GPU context, which must be active.
-
-    The environment variable CONIC_DEVICE=headless takes a context of its own instead, which needs moderngl; it is
-    there to compare the two. Raises DeviceError where there is no such device.
-    """
-    if os.environ.get("CONIC_DEVICE") == "headless":
-        from .engine.devices.headless import HeadlessDevice
-
-        return HeadlessDevice()
-    return blender_device()
-
-
-def blender_device():
-    """A device on Blender's GPU context, whose textures Blender can draw."""
-    return BlenderDevice() if bpy.app.background else WindowDevice()
 
 
 class Reporter:
@@ -109,18 +72,6 @@ def render_layer(engine, depsgraph):
         if is_defect(error):
             traceback.print_exception(error)
         engine.report({"ERROR"}, sentence_of(error))
-
-
-def is_defect(error):
-    """Whether an exception is Conic's own fault, so that its traceback belongs in the console."""
-    return not isinstance(error, (ConicError, MemoryError))
-
-
-def sentence_of(error):
-    """What a user is told of an exception."""
-    if isinstance(error, MemoryError):
-        return "not enough memory for this scene"
-    return str(error) if not is_defect(error) else f"{type(error).__name__}: {str(error) or 'see the console'}"
 
 
 class LayerRender:

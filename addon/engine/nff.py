@@ -124,7 +124,7 @@ def _world(records):
     rows = records.rows("b")
     records.refuse(np.arange(len(rows)) > 0, rows, "a second background, expected one 'b'")
     color = records.columns(rows, 3)
-    records.refuse((color < 0.0).any(axis=1), rows, "the background is negative, expected colours from 0 up")
+    records.refuse((color < 0.0).any(axis=1), rows, "the background is negative, expected colors from 0 up")
     return World(color=tuple(color[0].tolist()) if len(rows) else (0.0, 0.0, 0.0))
 
 
@@ -135,7 +135,7 @@ def _lights(records):
         values = records.columns(np.array([row]), 6 if colored else 3)[0]
         color = values[3:] if colored else np.full(3, 1.0 / np.sqrt(len(rows)))
         if (color < 0.0).any():
-            raise records.error(row, "the light is negative, expected colours from 0 up")
+            raise records.error(row, "the light is negative, expected colors from 0 up")
         lights.append(Light.constant(values[:3].tolist(), color.tolist()))
     return lights
 

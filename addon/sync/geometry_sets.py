@@ -68,40 +68,94 @@ class GeometryWalk:
     of Blender's two sets of flags counts."""
 
     def __init__(self, make, for_render):
-        self._make, self._for_render = make, for_render
+        self.make, self._for_render = make, for_render
         self._sets = {}  # by object: what is asked for again comes as a copy
         self._references = {}
         self.uids = set()  # of the objects and collections that were met
 
     def own(self, obj, matrix):
         """The copies, one or none, of an object as it stands there itself by `matrix` (1, 4, 4)."""
-        return [self._make(obj, kind, obj.data, matrix) for kind in self._kinds(obj)]
+        return [self.make(obj, kind, obj.data, matrix) for kind in self.kinds(obj)]
 
     def made(self, obj, matrix):
         """The copies that an object of the scene makes; UnknownInstancerError where these are not by geometry nodes."""
-        found = []
-        self._recurse(found, obj, obj, _Level(matrix.transpose(0, 2, 1)), (obj,))
-        return found
+        root = _Root(self, obj)
+        root.recurse(obj, _Level(matrix.transpose(0, 2, 1)), (obj,))
+        return root.found
 
-    def _recurse(self, found, root, obj, level, stack):
-        """What an object makes that stands in the places of a level. `stack`: the objects that lead here."""
-        self.uids.add(original_key(obj))
+    def is_hidden(self, owner):
+        """Whether an object or collection is hidden as such."""
+        return owner.hide_render if self._for_render else owner.hide_viewport
+
+    def set_of(self, obj):
+        """The GeometrySet of an object, see `geometry_set_of`."""
+        key = original_key(obj)
+        if key not in self._sets:
+            self._sets[key] = geometry_set_of(obj)
+        return self._sets[key]
+
+    def references_of(self, geometry_set):
+        """What a GeometrySet, which lives as long as this, instances."""
+        key = id(geometry_set)
+        if key not in self._references:
+            self._references[key] = geometry_set, geometry_set.instance_references()
+        return self._references[key][1]
+
+    def visible(self, collection):
+        """The objects of a collection and its children that are not hidden, each once, in Blender's order."""
+        order, visible = [], set()
+
+        def visit(collection, hidden):
+            hidden = hidden or self.is_hidden(collection)
+            for obj in collection.objects:
+                order.append(obj)
+                if not hidden and not self.is_hidden(obj):
+                    visible.add(obj)
+            for child in collection.children:
+                visit(child, hidden)
+
+        visit(collection, False)
+        return [obj for obj in dict.fromkeys(order) if obj in visible]
+
+    def kinds(self, obj):
+        """As what an object shows itself, besides what it makes."""
+        if obj.data is None:
+            return
+        shows = obj.show_instancer_for_render if self._for_render else obj.show_instancer_for_viewport
+        hair = len(obj.particle_systems) > 0
+        if shows or not (hair or obj.is_instancer or _makes_instances(obj, self.set_of(obj))):
+            yield obj.type
+        if hair and shows_hair(obj):
+            yield "HAIR"
+
+
+class _Root:
+    """The walk through what one object of the scene makes. `found`: the copies. In the methods `stack` are the objects
+    that lead to a place: what is in itself ends there."""
+
+    def __init__(self, walk, root):
+        self._walk, self._root = walk, root
+        self.found = []
+
+    def recurse(self, obj, level, stack):
+        """What an object makes that stands in the places of a level."""
+        self._walk.uids.add(original_key(obj))
         if obj.type == "META" and level.ids:
             return
-        if obj.hide_render if self._for_render else obj.hide_viewport:
+        if self._walk.is_hidden(obj):
             return
         if obj.is_instancer and obj.type == "FONT" and obj.instance_type == "VERTS":
             raise UnknownInstancerError
-        geometry_set = self._set_of(obj)
+        geometry_set = self._walk.set_of(obj)
         if _makes_instances(obj, geometry_set):
-            self._geometry_set(found, root, obj, geometry_set, level, stack, nested=False)
+            self._geometry_set(obj, geometry_set, level, stack, nested=False)
         elif obj.is_instancer:
             raise UnknownInstancerError
 
-    def _geometry_set(self, found, root, obj, geometry_set, level, stack, nested):
+    def _geometry_set(self, obj, geometry_set, level, stack, nested):
         number = 0
         for kind, data in components_of(obj, geometry_set, nested):
-            self._emit(found, root, obj, kind, data, level.within(number), geometry_set)
+            self._emit(obj, kind, data, level.within(number), geometry_set)
             number += 1
         cloud = geometry_set.instances_pointcloud()
         if cloud is None:
@@ -111,100 +165,64 @@ class GeometryWalk:
             if len(level.ids) >= _DEEPEST:
                 return
         columns, ids, reference_of = _instances(cloud)
-        for reference, rows in _by_reference(self._references_of(geometry_set), reference_of):
+        for reference, rows in _by_reference(self._walk.references_of(geometry_set), reference_of):
             placed = level.each(columns[rows], ids[rows], geometry_set, rows)
             if isinstance(reference, bpy.types.Object):
-                self._object(found, root, reference, placed, stack)
+                self._object(reference, placed, stack)
             elif len(placed.ids) >= _DEEPEST:
                 continue
             elif isinstance(reference, bpy.types.Collection):
-                self._collection(found, root, obj, reference, placed, stack)
+                self._collection(obj, reference, placed, stack)
             elif reference is not None:
-                self._geometry_set(found, root, obj, reference, placed, stack, nested=True)
+                self._geometry_set(obj, reference, placed, stack, nested=True)
 
-    def _object(self, found, root, obj, level, stack):
+    def _object(self, obj, level, stack):
         """An instanced object, whose number is the innermost of the level's, and what it makes itself."""
-        self._instance(found, root, obj, level)
+        self._instance(obj, level)
         if obj not in stack and len(level.ids) < _DEEPEST:
-            self._recurse(found, root, obj, level, (*stack, obj))
+            self.recurse(obj, level, (*stack, obj))
 
-    def _collection(self, found, root, obj, collection, level, stack):
-        self.uids.add(original_key(collection))
+    def _collection(self, obj, collection, level, stack):
+        """A collection that `obj` instances."""
+        self._walk.uids.add(original_key(collection))
         offset = np.eye(4, dtype=np.float32)
         offset[3, :3] = -collection.instance_offset
         number = 0
-        for child in self._visible(collection):
+        for child in self._walk.visible(collection):
             if child == obj:
                 continue
             placed = level.moved(np.array(child.matrix_world, np.float32).T @ offset)
-            self._instance(found, root, child, placed.within(number))
+            self._instance(child, placed.within(number))
             if child not in stack and len(placed.ids) + 1 < _DEEPEST:
-                self._recurse(found, root, child, placed.within(number + 1), (*stack, child))
+                self.recurse(child, placed.within(number + 1), (*stack, child))
             number += 2
 
-    def _instance(self, found, root, obj, level):
-        self.uids.add(original_key(obj))
+    def _instance(self, obj, level):
+        """An instanced object itself."""
+        self._walk.uids.add(original_key(obj))
         is_original = obj.parent is not None and obj.parent.instance_type in ("VERTS", "FACES")
         if not is_original:  # those are there for their parent to put on its vertices or faces
-            for kind in self._kinds(obj):
-                self._emit(found, root, obj, kind, obj.data, level)
+            for kind in self._walk.kinds(obj):
+                self._emit(obj, kind, obj.data, level)
 
-    def _set_of(self, obj):
-        key = original_key(obj)
-        if key not in self._sets:
-            self._sets[key] = geometry_set_of(obj)
-        return self._sets[key]
-
-    def _references_of(self, geometry_set):
-        """What a GeometrySet, which lives as long as this, instances."""
-        key = id(geometry_set)
-        if key not in self._references:
-            self._references[key] = geometry_set, geometry_set.instance_references()
-        return self._references[key][1]
-
-    def _emit(self, found, root, obj, kind, data, level, owner=None):
-        if kind != "META":
-            matrices = level.columns.transpose(0, 2, 1)
-            found.append(
-                self._make(
-                    obj,
-                    kind,
-                    data,
-                    matrices,
-                    is_own=owner is None,
-                    instancer=root,
-                    persistent_ids=level.ids,
-                    layers=level.layers,
-                    owner=owner,
-                )
-            )
-
-    def _visible(self, collection):
-        """The objects of a collection and its children that are not hidden, each once, in Blender's order."""
-        order, visible = [], set()
-
-        def visit(collection, hidden):
-            hidden = hidden or (collection.hide_render if self._for_render else collection.hide_viewport)
-            for obj in collection.objects:
-                order.append(obj)
-                if not hidden and not (obj.hide_render if self._for_render else obj.hide_viewport):
-                    visible.add(obj)
-            for child in collection.children:
-                visit(child, hidden)
-
-        visit(collection, False)
-        return [obj for obj in dict.fromkeys(order) if obj in visible]
-
-    def _kinds(self, obj):
-        """As what an object shows itself, besides what it makes."""
-        if obj.data is None:
+    def _emit(self, obj, kind, data, level, owner=None):
+        """Data that is shown in the places of a level. `owner`: the geometry set that it is of, None for an object's
+        own."""
+        if kind == "META":
             return
-        shows = obj.show_instancer_for_render if self._for_render else obj.show_instancer_for_viewport
-        hair = len(obj.particle_systems) > 0
-        if shows or not (hair or obj.is_instancer or _makes_instances(obj, self._set_of(obj))):
-            yield obj.type
-        if hair and shows_hair(obj):
-            yield "HAIR"
+        self.found.append(
+            self._walk.make(
+                obj,
+                kind,
+                data,
+                level.columns.transpose(0, 2, 1),
+                is_own=owner is None,
+                instancer=self._root,
+                persistent_ids=level.ids,
+                layers=level.layers,
+                owner=owner,
+            )
+        )
 
 
 def geometry_set_of(obj):

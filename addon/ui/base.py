@@ -14,3 +14,16 @@ class PropertiesPanel:
     @classmethod
     def poll(cls, context):
         return context.engine in cls.COMPAT_ENGINES
+
+
+class RenderPanel(PropertiesPanel):
+    """Mix-in of a panel of the Render tab."""
+
+    bl_context = "render"
+
+
+def as_rows(layout):
+    """A panel's layout whose properties are rows, names to the left. No button to animate one stands beside it."""
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    return layout

@@ -3,8 +3,8 @@
 
 import bpy
 
+from .base import RenderPanel, as_rows
 from .film_presets import CONIC_PT_film_presets
-from .render_settings import RenderPanel
 
 
 class CONIC_RENDER_PT_film(RenderPanel, bpy.types.Panel):
@@ -15,9 +15,7 @@ class CONIC_RENDER_PT_film(RenderPanel, bpy.types.Panel):
         CONIC_PT_film_presets.draw_panel_header(self.layout)
 
     def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = as_rows(self.layout)
         layout.prop(context.scene.render, "film_transparent", text="Transparent")
         layout.prop(context.scene.conic, "use_flat_colors")
 
@@ -33,9 +31,7 @@ class FilmOption(RenderPanel):
         self.layout.prop(context.scene.conic, self.option, text="")
 
     def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = as_rows(self.layout)
         layout.active = getattr(context.scene.conic, self.option)
         self.draw_settings(layout, context.scene.conic)
 

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .base import ENGINE, PropertiesPanel
+from .base import ENGINE, PropertiesPanel, as_rows
 
 
 class CONIC_MATERIAL_PT_settings(PropertiesPanel, bpy.types.Panel):
@@ -15,9 +15,7 @@ class CONIC_MATERIAL_PT_settings(PropertiesPanel, bpy.types.Panel):
         return context.material is not None and super().poll(context)
 
     def draw(self, context):
-        layout, material = self.layout, context.material
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, material = as_rows(self.layout), context.material
         column = layout.column(heading="Backface Culling")
         column.prop(material, "use_backface_culling", text="Camera")
         column.prop(material, "use_backface_culling_shadow", text="Shadow")

@@ -6,8 +6,8 @@ import textwrap
 import bpy
 
 from ..properties import PRIMITIVES
-from ..sync.objects import describe
-from .base import PropertiesPanel
+from ..sync.description import describe
+from .base import PropertiesPanel, as_rows
 from .object_visibility import is_seen
 
 #: Types of objects whose faces can stand for a shape.
@@ -48,9 +48,7 @@ class CONIC_OBJECT_PT_shape(PropertiesPanel, bpy.types.Panel):
         return is_seen(context.object) and super().poll(context)
 
     def draw(self, context):
-        layout, obj, depsgraph = self.layout, context.object, context.evaluated_depsgraph_get()
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, obj, depsgraph = as_rows(self.layout), context.object, context.evaluated_depsgraph_get()
         if obj.type in SHAPED:
             layout.prop(obj.conic, "primitive")
         if may_have_lines(obj, depsgraph):

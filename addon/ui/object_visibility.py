@@ -3,7 +3,7 @@
 
 import bpy
 
-from .base import PropertiesPanel
+from .base import PropertiesPanel, as_rows
 
 #: Types that rays can meet.
 SEEN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
@@ -24,9 +24,7 @@ class CONIC_OBJECT_PT_ray_visibility(PropertiesPanel, bpy.types.Panel):
         return is_seen(context.object) and super().poll(context)
 
     def draw(self, context):
-        layout, obj = self.layout, context.object
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, obj = as_rows(self.layout), context.object
         column = layout.column()
         column.prop(obj, "visible_camera", text="Camera")
         column.prop(obj, "visible_glossy", text="Glossy")

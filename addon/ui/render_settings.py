@@ -1,22 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels of the Render tab."""
+"""Panels of the Render tab, and the switch that pauses a rendered viewport."""
 
 import bpy
 
-from .base import ENGINE, PropertiesPanel
-
-
-class RenderPanel(PropertiesPanel):
-    bl_context = "render"
+from .base import ENGINE, RenderPanel, as_rows
 
 
 class CONIC_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
 
     def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = as_rows(self.layout)
         column = layout.column(align=True)
         column.prop(context.scene.conic, "preview_samples")
         column.prop(context.scene.conic, "samples")
@@ -27,9 +21,7 @@ class CONIC_RENDER_PT_viewport(RenderPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = as_rows(self.layout)
         column = layout.column()
         column.prop(context.scene.conic, "preview_frame_seconds")
         column.prop(context.scene.render, "preview_pixel_size", text="Pixel Size")
@@ -40,9 +32,7 @@ class CONIC_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
     bl_label = "Light Paths"
 
     def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = as_rows(self.layout)
         column = layout.column(align=True)
         column.prop(context.scene.conic, "max_depth")
         column.prop(context.scene.conic, "weight_cutoff")
@@ -53,9 +43,7 @@ class CONIC_RENDER_PT_shapes(RenderPanel, bpy.types.Panel):
     bl_label = "Shapes"
 
     def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = as_rows(self.layout)
         settings = context.scene.conic
         layout.prop(settings, "recognise")
         column = layout.column(align=True)
@@ -68,9 +56,7 @@ class CONIC_RENDER_PT_performance(RenderPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = as_rows(self.layout)
         layout.prop(context.scene.conic, "entry")
 
 

@@ -4,7 +4,7 @@
 import bpy
 
 from .. import statistics
-from .render_settings import RenderPanel
+from .base import RenderPanel
 
 
 class CONIC_RENDER_PT_statistics(RenderPanel, bpy.types.Panel):

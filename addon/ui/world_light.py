@@ -3,23 +3,19 @@
 
 import bpy
 
-from .base import PropertiesPanel
+from .base import PropertiesPanel, RenderPanel, as_rows
 
 
-class CONIC_RENDER_PT_world_light(PropertiesPanel, bpy.types.Panel):
+class CONIC_RENDER_PT_world_light(RenderPanel, bpy.types.Panel):
     bl_label = "World Light"
-    bl_context = "render"
 
     def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = as_rows(self.layout)
         layout.prop(context.scene.conic, "world_light")
 
 
-class CONIC_RENDER_PT_ambient_occlusion(PropertiesPanel, bpy.types.Panel):
+class CONIC_RENDER_PT_ambient_occlusion(RenderPanel, bpy.types.Panel):
     bl_label = "Ambient Occlusion"
-    bl_context = "render"
     bl_parent_id = "CONIC_RENDER_PT_world_light"
 
     def draw_header(self, context):
@@ -27,9 +23,7 @@ class CONIC_RENDER_PT_ambient_occlusion(PropertiesPanel, bpy.types.Panel):
         self.layout.prop(context.scene.conic, "use_ao", text="")
 
     def draw(self, context):
-        layout, settings = self.layout, context.scene.conic
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, settings = as_rows(self.layout), context.scene.conic
         layout.active = settings.use_ao and _is_hemisphere(settings)
         column = layout.column(align=True)
         column.prop(settings, "ao_distance")
@@ -46,9 +40,7 @@ class CONIC_WORLD_PT_ray_visibility(PropertiesPanel, bpy.types.Panel):
         return super().poll(context) and hasattr(context.world, "cycles_visibility")
 
     def draw(self, context):
-        layout, world = self.layout, context.world
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, world = as_rows(self.layout), context.world
         column = layout.column(heading="Seen by")
         for ray in ("camera", "diffuse", "glossy", "transmission"):
             column.prop(world.cycles_visibility, ray)

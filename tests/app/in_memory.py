@@ -21,8 +21,8 @@ from mathutils import Quaternion
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import addon
-from addon import viewport_log
 from addon.operators.nff_shapes import new_point_cloud
+from addon.viewport import history
 from tests.app.live_view import Screen, fill_window, run_in_window, view_parts
 
 sys.dont_write_bytecode = True
@@ -135,8 +135,8 @@ def drawn(times=DRAWS):
             if time.monotonic() - start > MOST:
                 raise TimeoutError("the window is not drawn")
             yield
-    loads.extend(record for record in viewport_log.records if getattr(record, "change", None))
-    viewport_log.records.clear()
+    loads.extend(record for record in history.records if getattr(record, "change", None))
+    history.records.clear()
 
 
 def edits():

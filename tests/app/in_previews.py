@@ -6,34 +6,27 @@ For each tab of the Properties editor that it shows, it writes FOLDER/TAB.json w
 {"error": text}, and goes on when FOLDER/TAB.seen is there. It does not close the window.
 """
 
-import json
 import sys
 import time
-import traceback
 from pathlib import Path
 
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import addon
+from tests.app.live_view import run_in_window, tell
 
 sys.dont_write_bytecode = True
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
 TICK = 0.2  # seconds
 REST = 3.0  # without a preview being rendered: it is done
+TABS = "MATERIAL", "WORLD", "DATA"
 OPEN = ("MATERIAL_PT_preview", "CONIC_WORLD_PT_preview", "DATA_PT_preview")
 CLOSED = (
     "EEVEE_MATERIAL_PT_surface",
     "EEVEE_WORLD_PT_surface",
     "CONIC_LIGHT_PT_light",
 )  # they show colors of their own
-
-
-def tell(tab, **state):
-    """Write the state in one go: the test may look at any time."""
-    temporary = FOLDER / "state.part"
-    temporary.write_text(json.dumps(state))
-    temporary.rename(FOLDER / f"{tab}.json")
 
 
 def set_panels():
@@ -62,7 +55,7 @@ def steps():
     window = bpy.context.window_manager.windows[0]
     area = max(window.screen.areas, key=lambda area: area.width * area.height)
     area.type = "PROPERTIES"
-    for tab in ("MATERIAL", "WORLD", "DATA"):
+    for tab in TABS:
         window.view_layer.objects.active = bpy.data.objects["Light" if tab == "DATA" else "Cube"]
         yield
         area.spaces.active.context = tab
@@ -72,27 +65,16 @@ def steps():
             yield
             if bpy.app.is_job_running("RENDER_PREVIEW"):
                 rests_since = time.monotonic()
-        tell(tab)
+        tell(FOLDER / f"{tab}.json")
         while not (FOLDER / f"{tab}.seen").exists():
             yield
 
 
-way = steps()
-
-
-def tick():
-    """One step further; seconds until the next, None at the end."""
-    try:
-        next(way)
-    except StopIteration:
-        return None
-    except Exception:
-        for tab in ("MATERIAL", "WORLD", "DATA"):
-            tell(tab, error=traceback.format_exc())
-        return None
-    return TICK
+def failed(text):
+    for tab in TABS:
+        tell(FOLDER / f"{tab}.json", error=text)
 
 
 bpy.context.preferences.view.show_splash = False
 addon.register()
-bpy.app.timers.register(tick, first_interval=1.0)
+run_in_window(steps(), TICK, failed)

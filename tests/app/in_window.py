@@ -6,17 +6,16 @@ Writes FOLDER/f12.png, then, once the view has come to rest, FOLDER/state.json: 
 pixels from the window's lower left, or {"error": text}. It does not close the window.
 """
 
-import json
 import math
 import sys
 import time
-import traceback
 from pathlib import Path
 
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import addon
+from tests.app.live_view import fill_window, run_in_window, tell, view_parts
 
 sys.dont_write_bytecode = True
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
@@ -26,17 +25,9 @@ REST = 2.0  # without a redraw: the picture is done
 draws = []  # when the rendered view was drawn
 
 
-def tell(**state):
-    """Write the state in one go: the test may look at any time."""
-    temporary = FOLDER / "state.part"
-    temporary.write_text(json.dumps(state))
-    temporary.rename(FOLDER / "state.json")
-
-
 def steps():
     """The whole way; each yield waits for one tick."""
     bpy.context.preferences.view.render_display_type = "NONE"
-    bpy.context.preferences.view.show_splash = False
     scene = bpy.context.scene
     scene.render.filepath = str(FOLDER / "f12.png")
     done = []
@@ -53,24 +44,13 @@ def steps():
     while not draws or time.monotonic() - draws[-1] < REST:
         yield
     region = view_parts()["region"]
-    tell(region=[region.x, region.y, region.width, region.height])
-
-
-def view_parts():
-    """Window, area and region of the 3D viewport, for an override of the context."""
-    window = bpy.context.window_manager.windows[0]
-    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
-    region = next(region for region in area.regions if region.type == "WINDOW")
-    return {"window": window, "area": area, "region": region}
+    tell(FOLDER / "state.json", region=[region.x, region.y, region.width, region.height])
 
 
 def show_camera_view():
     """Fill the window with what the camera sees, rendered, pixel by pixel."""
-    with bpy.context.temp_override(**view_parts()):
-        bpy.ops.screen.screen_full_area(use_hide_panels=True)
-    yield
+    yield from fill_window()
     space = view_parts()["area"].spaces.active
-    space.overlay.show_overlays = space.show_gizmo = space.show_region_header = False
     space.region_3d.view_perspective = "CAMERA"
     space.region_3d.view_camera_offset = 0.0, 0.0
     space.region_3d.view_camera_zoom = 100.0 - 50.0 * math.sqrt(2.0)  # the picture as large as the region
@@ -79,20 +59,5 @@ def show_camera_view():
     space.shading.type = "RENDERED"
 
 
-way = steps()
-
-
-def tick():
-    """One step further; seconds until the next, None at the end."""
-    try:
-        next(way)
-    except StopIteration:
-        return None
-    except Exception:
-        tell(error=traceback.format_exc())
-        return None
-    return TICK
-
-
 addon.register()
-bpy.app.timers.register(tick, first_interval=1.0)
+run_in_window(steps(), TICK, lambda text: tell(FOLDER / "state.json", error=text))

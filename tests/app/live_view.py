@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The 3D viewport of Blender's window, for scripts that run in it: fill the window, see the screen, wait for rest."""
+"""The 3D viewport of Blender's window, for scripts that run in it: fill it, see the screen, wait, tell the test."""
 
+import json
 import time
 import traceback
 
@@ -115,3 +116,10 @@ def run_in_window(steps, tick, failed):
         return tick
 
     bpy.app.timers.register(step, first_interval=1.0, persistent=True)
+
+
+def tell(path, **state):
+    """Write a state to a JSON file in one go: whoever waits for the file may look at any time."""
+    temporary = path.with_suffix(".part")
+    temporary.write_text(json.dumps(state))
+    temporary.rename(path)

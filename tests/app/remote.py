@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.screen import blender_window, virtual_screen
-from tests.app.test_window import save_picture
+from tests.app.screen import blender_window, save_picture, virtual_screen
 
 ROOT = Path(__file__).resolve().parents[2]
 WAIT = 300.0  # seconds at most, on a software rasteriser

@@ -1,12 +1,17 @@
 """A screen that is a file: an X server without hardware (Xvfb), and Blender's window on it."""
 
+import json
 import os
 import subprocess
 import sys
+import time
 from contextlib import contextmanager
 
 import bpy
 import numpy as np
+import pytest
+
+WAIT = 420.0  # seconds at most, on a software rasteriser
 
 
 @contextmanager
@@ -53,3 +58,25 @@ def blender_window(environment, size, log, *arguments):
             yield process
         finally:
             process.kill()
+
+
+def wait_for(path, process, log):
+    """The state that the script in the window writes to `path`."""
+    end = time.monotonic() + WAIT
+    while not path.exists():
+        if process.poll() is not None or time.monotonic() > end:
+            pytest.fail(f"the window showed no picture; Blender said:\n{log.read_text()}")
+        time.sleep(0.2)
+    state = json.loads(path.read_text())
+    assert "error" not in state, state["error"]
+    return state
+
+
+def save_picture(pixels, path):
+    """Write pixels (h, w, 3), as they are shown, to a PNG file."""
+    height, width = pixels.shape[:2]
+    image = bpy.data.images.new("shown", width, height)
+    image.pixels.foreach_set(np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1).ravel())
+    image.filepath_raw, image.file_format = str(path), "PNG"
+    image.save()
+    bpy.data.images.remove(image)

@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.app.screen import blender_window, virtual_screen
-from tests.app.test_window import save_picture, wait_for
+from tests.app.screen import blender_window, save_picture, virtual_screen, wait_for
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = 800, 600

@@ -24,7 +24,7 @@ def test_quad_view(rested):
     found = log(rested)
     assert_only_turned(found)
     assert found["began"] >= 4
-    assert rested.run("result = len(viewport_scenes._scenes)") == 1
+    assert rested.run("result = len(scenes._scenes)") == 1
     rested.key("ctrl+alt+q")
     rested.rest()
 
@@ -38,7 +38,7 @@ def test_a_second_viewport(rested):
     rested.rest()
     rested.picture("two viewports")
     assert_only_turned(log(rested))
-    counts = "result = [len(viewport_scenes._scenes)] + [len(s.sessions) for s in viewport_scenes._scenes.values()]"
+    counts = "result = [len(scenes._scenes)] + [len(s.sessions) for s in scenes._scenes.values()]"
     assert rested.run(counts) == [1, 2]
     rested.run("bpy.data.objects['red'].location.z = 1.0")
     rested.rest()
@@ -58,7 +58,7 @@ def test_solid_and_back(rested):
     before = rested.picture()
     rested.run("view().shading.type = 'SOLID'")
     rested.rest(0.5)
-    assert rested.run("result = [len(s.sessions) for s in viewport_scenes._scenes.values()]") == [0]
+    assert rested.run("result = [len(s.sessions) for s in scenes._scenes.values()]") == [0]
     rested.run("records.clear(); view().shading.type = 'RENDERED'")
     rested.rest()
     found = log(rested)
@@ -113,7 +113,7 @@ def test_another_engine_and_back(rested, engine):
     rested.rest()
     rested.picture(engine.lower())
     rested.rest(1.5)
-    assert rested.run("result = len(viewport_scenes._scenes)") == 0
+    assert rested.run("result = len(scenes._scenes)") == 0
     rested.run("bpy.context.scene.render.engine = 'CONIC'")
     rested.rest()
     x, y, width, height = region(rested)
@@ -149,7 +149,7 @@ def test_opening_a_file(rested, tmp_path):
     rested.run("view().shading.type = 'RENDERED'")
     rested.rest()
     assert far(moved, ball(rested.picture("opened"), BLUE)) > 10
-    assert rested.run("result = len(viewport_scenes._scenes)") == 1
+    assert rested.run("result = len(scenes._scenes)") == 1
 
 
 def test_a_second_window_opens_and_closes(rested):
@@ -171,13 +171,13 @@ def test_a_second_window_opens_and_closes(rested):
             bpy.ops.wm.window_close()
     """)
     rested.rest()
-    assert rested.run("result = [len(s.sessions) for s in viewport_scenes._scenes.values()]") == [1]
+    assert rested.run("result = [len(s.sessions) for s in scenes._scenes.values()]") == [1]
 
 
 def test_a_window_closes_while_the_view_traces(rested):
     """No GPU context is active then until another window is drawn: tracing in a timer has to wait for that."""
     before = ball(rested.picture(), RED)
-    session = "next(iter(next(iter(viewport_scenes._scenes.values())).sessions))"
+    session = "next(iter(next(iter(scenes._scenes.values())).sessions))"
     samples = rested.run("""
         result = bpy.context.scene.conic.preview_samples
         bpy.context.scene.conic.preview_samples = 4096

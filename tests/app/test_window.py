@@ -1,10 +1,8 @@
 """Every geometry of Blender in the application's window: F12 and the rendered view show what a render without a
 window does. The pictures stay in build/app-pictures."""
 
-import json
 import shutil
 import sys
-import time
 from pathlib import Path
 
 import bpy
@@ -12,13 +10,12 @@ import numpy as np
 import pytest
 
 from examples import every_geometry
-from tests.app.screen import blender_window, virtual_screen
+from tests.app.screen import blender_window, save_picture, virtual_screen, wait_for
 from tests.blender.pictures import picture
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = 640, 480  # the smallest window that Blender opens
 COLUMNS = 5
-WAIT = 420.0  # seconds at most, on a software rasteriser
 
 pytestmark = pytest.mark.skipif(not shutil.which("Xvfb"), reason="Xvfb, a virtual screen, is not installed")
 
@@ -63,28 +60,6 @@ def show_in_window(file, folder):
     x, y, width, height = state["region"]
     assert (width, height) == SIZE, "the view fills the window"
     return screen[y : y + height, x : x + width]
-
-
-def wait_for(path, process, log):
-    """The state that the script in the window writes to `path`."""
-    end = time.monotonic() + WAIT
-    while not path.exists():
-        if process.poll() is not None or time.monotonic() > end:
-            pytest.fail(f"the window showed no picture; Blender said:\n{log.read_text()}")
-        time.sleep(0.2)
-    state = json.loads(path.read_text())
-    assert "error" not in state, state["error"]
-    return state
-
-
-def save_picture(pixels, path):
-    """Write pixels (h, w, 3), as they are shown, to a PNG file."""
-    height, width = pixels.shape[:2]
-    image = bpy.data.images.new("shown", width, height)
-    image.pixels.foreach_set(np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1).ravel())
-    image.filepath_raw, image.file_format = str(path), "PNG"
-    image.save()
-    bpy.data.images.remove(image)
 
 
 def is_object(pixels):

@@ -10,8 +10,8 @@ SIZE = 960, 640
 RED, GREEN, BLUE = range(3)
 
 SCENE = """
-from addon import viewport_log, viewport_scenes
-from addon.viewport_log import Draw, Load, records
+from addon.viewport import kept_scenes, scenes
+from addon.viewport.history import Draw, Load, records
 
 def view(number=0):
     return view_parts(number)["area"].spaces.active
@@ -86,7 +86,7 @@ def reset(window):
 
 def scenes(window):
     """How many scenes there are, but for those that wait for somebody to come back."""
-    return window.run("viewport_scenes.viewport_kept.let_go(); result = len(viewport_scenes._scenes)")
+    return window.run("kept_scenes.let_go(); result = len(scenes._scenes)")
 
 
 def region(window, number=0):

@@ -120,6 +120,24 @@ def node(tree, kind, to=None, output=0, **inputs):
     return made
 
 
+def shaded(build):
+    """(`Constants` of the engine material, `Synced`) of a quad whose tree `build(tree, output node)` makes."""
+    add_camera()
+    made, tree, output = material("stuff")
+    build(tree, output)
+    quad().data.materials.append(made)
+    synced = sync()
+    (instance,) = synced.scene.instances
+    return Constants(synced.scene.materials[instance.materials[0]]), synced
+
+
+def of_node(kind, **inputs):
+    """`Constants` of the engine material of one shader node alone; it must not be reported."""
+    read, synced = shaded(lambda tree, output: node(tree, kind, output.inputs["Surface"], **inputs))
+    assert not synced.messages
+    return read
+
+
 def image(pixels, name="image", **settings):
     """A generated image of pixels (h, w, 4) as they stand in its file."""
     pixels = np.asarray(pixels, np.float32)
@@ -198,3 +216,8 @@ def with_nodes(nodes, name="host", data=None, **settings):
     obj = link(data or bpy.data.meshes.new(name), name, **settings)
     obj.modifiers.new("nodes", "NODES").node_group = nodes.tree
     return obj
+
+
+def parts(read):
+    """The primitives of a `Read` by kind."""
+    return {part.kind: part for _, part in read.geometry.kinds()}

@@ -5,9 +5,9 @@ import gpu
 import numpy as np
 import pytest
 
-from addon import viewport_log
 from addon.engine.changes import Change
-from tests.blender.viewport_stand_in import StandIn, draws, mark, records
+from addon.viewport import history
+from tests.blender.viewport.stand_in import StandIn, draws, mark, records
 
 pytestmark = pytest.mark.skipif(not hasattr(gpu, "init"), reason="no GPU context in the background before Blender 5.2")
 
@@ -68,10 +68,10 @@ def of(name):
 
 def change_of(view, edit):
     """The change that an edit makes, and how many bytes were uploaded for it."""
-    viewport_log.records.clear()
+    history.records.clear()
     edit()
     view.settle()
-    loads = records(viewport_log.Load)
+    loads = records(history.Load)
     assert not any(load.error for load in loads), loads
     change = Change.NONE
     for load in loads:
@@ -163,14 +163,14 @@ def add_noise():
 def test_an_edited_mesh_is_the_only_geometry_that_is_uploaded(view):
     change, uploaded = change_of(view, move_vertex)
     assert change & (Change.GEOMETRY | Change.REFIT) and not change & (Change.ALL_TEXTURES | Change.PROGRAM)
-    assert "spheres" not in records(viewport_log.Load)[-1].bytes
+    assert "spheres" not in records(history.Load)[-1].bytes
     assert 0 < uploaded < 1 << 20
 
 
 def test_an_added_shape_leaves_the_meshes_alone(view):
     change, _ = change_of(view, lambda: bpy.ops.conic.sphere_add(location=(-2.0, 0.0, 0.0)))
     assert change & Change.GEOMETRY and not change & Change.ALL_TEXTURES
-    assert "triangles" not in records(viewport_log.Load)[-1].bytes
+    assert "triangles" not in records(history.Load)[-1].bytes
 
 
 def test_a_new_node_is_another_program(view):
@@ -180,7 +180,7 @@ def test_a_new_node_is_another_program(view):
 
 def test_a_removed_mesh_uploads_no_geometry(view):
     change_of(view, lambda: bpy.data.objects.remove(of("Monkey")))
-    assert not {"triangles", "spheres"} & set(records(viewport_log.Load)[-1].bytes)
+    assert not {"triangles", "spheres"} & set(records(history.Load)[-1].bytes)
 
 
 def test_pixels_of_an_image(view):

@@ -9,7 +9,7 @@ from addon import statistics
 from addon.engine import entries
 from addon.engine.devices.blender_gpu import BlenderDevice
 from tests.blender.pictures import picture
-from tests.blender.viewport_stand_in import StandIn, mark
+from tests.blender.viewport.stand_in import StandIn, mark
 
 WIDTH, HEIGHT = 93, 61  # tiles end within work groups
 

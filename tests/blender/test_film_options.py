@@ -15,7 +15,7 @@ from addon.sync.scene_sync import sync_settings
 from tests.blender.building import add_camera, link, material, node, sync
 from tests.blender.pictures import picture
 from tests.blender.test_sync_points import cloud
-from tests.blender.viewport_stand_in import StandIn
+from tests.blender.viewport.stand_in import StandIn
 
 WIDTH, HEIGHT = 96, 72
 

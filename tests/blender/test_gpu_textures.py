@@ -7,12 +7,12 @@ import gpu
 import numpy as np
 import pytest
 
+from addon.device import WindowDevice
 from addon.engine import Camera, Geometry, Instances, Light, LoadedScene, Material, Scene, Session, Settings, Spheres
 from addon.engine.devices import blender_gpu
 from addon.engine.devices.blender_gpu import BlenderDevice
 from addon.engine.layout import DATA_WIDTH
 from addon.engine.shader_source import ProgramSource
-from addon.render_session import WindowDevice
 
 
 @pytest.fixture(params=[BlenderDevice, WindowDevice])

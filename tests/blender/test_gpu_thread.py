@@ -1,8 +1,11 @@
 """Pieces of a render that the main thread does for the render's own thread."""
 
+import gc
 import threading
 import time
+import weakref
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 
 import pytest
 
@@ -44,6 +47,27 @@ def test_errors_are_raised_where_the_piece_was_asked_for(render_thread):
     future = pump(render_thread.submit(gpu_thread.call, lambda: 1 / 0, stopped=never))
     with pytest.raises(ZeroDivisionError):
         future.result()
+
+
+def test_an_error_that_was_caught_keeps_nothing(render_thread):
+    """Python's search for garbage may be in a thread that must not free textures."""
+    held = []
+
+    def fail():
+        data = {1.0}
+        held.append(weakref.ref(data))
+        raise ValueError
+
+    def render():
+        with suppress(ValueError):
+            gpu_thread.call(fail, stopped=never)
+
+    gc.disable()
+    try:
+        pump(render_thread.submit(render)).result()
+        assert held[0]() is None
+    finally:
+        gc.enable()
 
 
 def test_a_stopped_render_does_not_wait_for_a_main_thread_that_never_comes(render_thread):

@@ -8,7 +8,7 @@ from mathutils import Euler, Matrix
 from addon.engine.errors import SceneError
 from addon.engine.packing import pack
 from addon.engine.primitives import invertible
-from addon.sync.objects import describe
+from addon.sync.description import describe
 from tests.blender.building import add_camera, image, link, material, mesh_of, node, quad, sync, triangles_of
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from addon.engine.expression import attribute_keys, expression
 from addon.sync import dupli_iterator
-from addon.sync.objects import describe
+from addon.sync.description import describe
 from addon.sync.scene_sync import SyncStatistics, sync_scene
 from tests.blender.building import (
     GeometryNodes,

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
-from addon.sync.objects import describe
+from addon.sync.description import describe
 from tests.blender.building import GeometryNodes, add_camera, link, material, mesh_of, node, sync, with_nodes
 
 POINTS = np.array([(0.0, 0.0, 0.0), (1.0, 2.0, 3.0), (-4.0, 0.5, 2.0), (7.0, 7.0, 7.0)])

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from mathutils import Euler, Matrix, Vector
 
-from addon.sync.objects import describe
+from addon.sync.description import describe
 from tests.blender.building import add_camera, image, link, material, mesh_of, node, quad, shapes_of, sync
 
 ADD = {

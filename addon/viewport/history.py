@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What viewports did lately, for tests and for whoever wonders where the time goes.
 
-`records` has the newest last; from Blender's Python console: `[r for r in viewport_log.records]`.
+`records` has the newest last; from Blender's Python console: `[r for r in history.records]`.
 """
 
 from collections import deque
 from dataclasses import dataclass
 
-from .engine.changes import Change
+from ..engine.changes import Change
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,8 @@
 
 import time
 
-from .viewport_display import Layer
-from .viewport_pace import MOST
+from .display import Layer
+from .pace import MOST
 
 #: How many finished pixels one of a picture is wide, from the finest on. None at 2: it would cost a quarter of the real
 #: one, for little.
@@ -30,6 +30,7 @@ class ViewportPicture:
         self._whole = self._kept = None  # layers: the last whole film of this view; what views before have shown
         self._edges = None  # of the film that forms, see `Layer`
         self._first_step = None  # of the last first picture
+        self._version = None  # of what is loaded, when it was begun
 
     @property
     def sample(self):
@@ -51,11 +52,20 @@ class ViewportPicture:
         """Whether parts of the picture before are shown."""
         return self._kept is not None
 
-    def begin(self, view, seconds, same_scene):
-        """Draw the first picture of a `View`, meant to take `seconds`. `same_scene`: whether it differs from the one
-        before by the view alone, so that what is there can be shown where it still is right."""
-        self._kept = self._keep(view) if same_scene else None
-        self.view, self._whole = view, None
+    @property
+    def is_of_what_is_loaded(self):
+        """Whether it shows what is loaded now, not what was when it was begun."""
+        return self._version == self.session.loaded.version
+
+    def is_of(self, view):
+        """Whether it shows this `View` of what is loaded now: it can go on."""
+        return self.is_of_what_is_loaded and self.view.key == view.key
+
+    def begin(self, view, seconds):
+        """Draw the first picture of a `View`, meant to take `seconds`. Of the same scene, what is there is shown where
+        it still is right."""
+        self._kept = self._keep(view) if self.is_of_what_is_loaded else None
+        self.view, self._whole, self._version = view, None, self.session.loaded.version
         self._first_step = self._choose_step(seconds)
         self._start(self._first_step)
         while self.session.step(seconds, tile_seconds=seconds):

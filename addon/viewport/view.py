@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from .engine.scene import Camera
-from .sync.camera import camera_of_view, frame_in_view
+from ..engine.scene import Camera
+from ..sync.camera import camera_of_view, frame_in_view
 
 _SAME = 1e-6  # how far axes may be off, and eyes in parts of their distance from the origin, to be the same
 

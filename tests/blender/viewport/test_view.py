@@ -8,7 +8,7 @@ import pytest
 
 from addon.engine.scene import Camera
 from addon.sync.camera import camera_of_view
-from addon.viewport_view import View, border_in_region, view_of
+from addon.viewport.view import View, border_in_region, view_of
 
 SIZE = 400, 300
 EYE = (3.0, -7.0, 4.0)

@@ -7,8 +7,8 @@ import bpy
 import gpu
 import numpy as np
 
-from addon import viewport_log, viewport_scenes
-from addon.viewport_session import ViewportSession
+from addon.viewport import history, scenes
+from addon.viewport.session import ViewportSession
 
 WIDTH, HEIGHT = 80, 60
 
@@ -88,18 +88,31 @@ class StandIn:
 
 def mark(_scene, depsgraph):
     """As a `view_update` that Blender calls."""
-    viewport_scenes.mark(depsgraph)
+    scenes.mark(depsgraph)
 
 
 def records(kind):
     """The records of a kind in the log, the newest last."""
-    return [record for record in viewport_log.records if isinstance(record, kind)]
+    return [record for record in history.records if isinstance(record, kind)]
 
 
 def loads():
     """Records of what was found to differ and was loaded."""
-    return [load for load in records(viewport_log.Load) if load.change]
+    return [load for load in records(history.Load) if load.change]
 
 
 def draws():
-    return records(viewport_log.Draw)
+    return records(history.Draw)
+
+
+def sphere_at(pixels):
+    """Mean column and area of what is darker than the sky, in pixels."""
+    dark = pixels[..., 0] < 0.5
+    return np.nonzero(dark)[1].mean() + 0.5, dark.sum()
+
+
+def add_lamp():
+    """A point lamp at the origin."""
+    lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "POINT"))
+    bpy.context.collection.objects.link(lamp)
+    return lamp

@@ -39,7 +39,7 @@ def _look():
     for scene, seen in list(_kept.items()):
         if scene.sessions:
             _kept[scene] = now
-        elif now - seen > SECONDS or scene.key[0][0] not in ours:
+        elif now - seen > SECONDS or scene.key.scene not in ours:
             del _kept[scene]
     return _LOOK_SECONDS if _kept else None
 

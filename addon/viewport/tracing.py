@@ -8,7 +8,7 @@ import weakref
 
 import bpy
 
-from .window_watch import WindowWatch
+from ..window_watch import WindowWatch
 
 _QUIET = 0.02  # seconds that nothing happens after a view has begun anew: the next motion of the mouse comes sooner
 _new = weakref.WeakKeyDictionary()  # `ViewportSession`s that were redrawn just now: seconds of quiet

@@ -1,30 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scenes that 3D viewports show. Viewports that show the same objects share one: it is read once, and is on the GPU
-once. It is freed some time after the last of them."""
+"""What 3D viewports show of a Blender scene, and how it is renewed."""
 
-import traceback
 import weakref
 from functools import partial
 
-import bpy
-
-from . import viewport_kept, viewport_log
-from .engine import LoadedScene
-from .engine.changes import Change
-from .engine.timing import timed
+from ..device import blender_device
+from ..engine import LoadedScene
+from ..engine.changes import Change
+from ..engine.timing import timed
+from ..statistics import Statistics
+from ..sync.scene_reader import SceneReader
+from ..sync.scene_sync import SyncStatistics, sync_settings
+from . import history, kept_scenes, waiting
 from .log_reporter import LogReporter
-from .render_session import blender_device, is_defect, sentence_of
-from .statistics import Statistics
-from .sync.scene_reader import SceneReader
-from .sync.scene_sync import SyncStatistics, sync_settings
-from .viewport_renewal import Renewal
-
-_LOOK_SECONDS = 0.01  # between two looks whether a scene has been prepared
-_SHOWN_TYPES = sorted(
-    name for name in bpy.types.SpaceView3D.bl_rna.properties.keys() if name.startswith("show_object_viewport_")
-)
-_scenes = weakref.WeakValueDictionary()  # by `ViewportScene.key`
-_replacing = False  # whether Blender is just replacing its data, by an undo or a file
+from .renewal import Renewal
 
 
 class ViewportScene:
@@ -39,11 +28,11 @@ class ViewportScene:
     """
 
     def __init__(self):
-        self.key = None  # of what it shows, see `_key`
-        self.report = LogReporter()
         self._renewal = None  # the `Renewal` under way; what has changed since it was read makes this stale
         self._better = None  # another one, of good trees for what is drawn
-        self.loaded = None
+        self.loaded = None  # as long as there is no GPU
+        self.key = None  # the `scenes.Key` of those who show it
+        self.report = LogReporter()
         self.device = blender_device()
         self.loaded = LoadedScene(self.device)
         self.reader = SceneReader(self.report)
@@ -84,7 +73,7 @@ class ViewportScene:
         if not self.sessions:
             self._distrust()
         self.sessions.add(session)
-        viewport_kept.keep(self)
+        kept_scenes.keep(self)
 
     def _distrust(self):
         """Read all of it anew. What comes out equal is not loaded again."""
@@ -102,33 +91,34 @@ class ViewportScene:
         What takes no longer than `patience` to prepare shows at once. Where that fails, what was loaded stays, and
         `error` tells why until the scene is read again."""
         try:
-            if self._renewal and self._renewal.stopped and self._renewal.wait(0.0):
-                self._drop_renewal()
-            if self._better and self._better.stopped:
-                self._drop_better()
+            self._drop_stopped()
             if self.stale and not self._renewal:
                 self._renewal = self._read(depsgraph, view, space)
                 self._renewal.wait(patience)
-            if self._renewal and not self._renewal.wait(0.0):
-                _watch_jobs()
-            elif self._renewal:
-                self._upload(seconds)
+            if self._renewal:
+                if self._renewal.wait(0.0):
+                    self._upload(seconds)
             elif self._better and self._better.wait(0.0):
                 self._upload_better(seconds)
         except Exception as error:  # raised, it would be so at every redraw
-            self._drop()
-            self.error = explain(error, self.report)
-            viewport_log.records.append(viewport_log.Load(error=self.error))
+            self._drop_renewal()
+            self._drop_better()
+            self.error = self.report.explain(error)
+            history.records.append(history.Load(error=self.error))
+        if self.preparing:
+            waiting.watch(self)
 
     def improve(self, view):
         """A picture of a `View` is there. If nothing else is to be done, cut strands finer that are too coarse for it,
-        and build good trees in the place of those that were built quickly."""
-        if self.settled and not self.error and self.reader.is_too_coarse(view.camera, view.size[1]):
+        or build good trees in the place of those that were built quickly."""
+        if not self.settled or self.error:
+            return
+        if self.reader.is_too_coarse(view.camera, view.size[1]):
             self.stale = True
             self.tag_redraw()
-        if self.loaded.can_improve and self.settled and not (self._better or self.error):
+        elif self.loaded.can_improve and not self._better:
             self._better = Renewal(self.loaded, self.loaded.prepare_better)
-            _watch_jobs()
+            waiting.watch(self)
 
     def _read(self, depsgraph, view, space):
         """Read the scene, and begin to prepare it: the `Renewal`."""
@@ -166,17 +156,19 @@ class ViewportScene:
 
     @staticmethod
     def _log(update, spent):
-        viewport_log.records.append(viewport_log.Load(update.change, dict(update.bytes), spent | update.seconds))
+        history.records.append(history.Load(update.change, dict(update.bytes), spent | update.seconds))
 
     def tag_redraw(self):
         """Have the viewports redrawn that show it."""
         for session in self.sessions:
             session.tag_redraw()
 
-    def _drop(self):
-        """Forget what is under way."""
-        self._drop_renewal()
-        self._drop_better()
+    def _drop_stopped(self):
+        """Drop what was stopped. What was read goes on until its thread notices: so one at a time is prepared."""
+        if self._renewal and self._renewal.stopped and self._renewal.wait(0.0):
+            self._drop_renewal()
+        if self._better and self._better.stopped:
+            self._drop_better()
 
     def _drop_renewal(self):
         if self._renewal:
@@ -190,128 +182,7 @@ class ViewportScene:
 
     def __del__(self):
         """Free what the GPU holds here and now: the last reference may be that of another thread."""
-        self._drop()
+        self._drop_renewal()
+        self._drop_better()
         if self.loaded is not None:  # there was a GPU
             self.loaded.free()
-
-
-def explain(error, report):
-    """What a user is told of an exception. The traceback of one that is Conic's fault goes to the log."""
-    if is_defect(error):
-        report("ERROR", "".join(traceback.format_exception(error)))
-    return sentence_of(error)
-
-
-def scene_of(space, depsgraph, before=None):
-    """The `ViewportScene` that a 3D viewport (None outside of a window) shows of a depsgraph. `before`: the one that it
-    has shown up to now. One that nobody else shows becomes the new one: most of it may be the same."""
-    key = _key(space, depsgraph)
-    if before is not None and before.key == key:
-        return before
-    scene = _scenes.get(key)
-    if scene is None:
-        alone = (each for each in list(_scenes.values()) if len(each.sessions) == (each is before))
-        scene = next((each for each in alone if each.key[0] == key[0]), None)
-        if scene is not None:
-            del _scenes[scene.key]
-            scene.stale = True
-    scene = scene or ViewportScene()
-    _scenes[key], scene.key = scene, key
-    return scene
-
-
-def mark(depsgraph):
-    """Blender says that something changed in a depsgraph: call it in each `view_update`.
-
-    While Blender replaces its data what it says is not looked at: it may refer to what is freed already.
-    """
-    if _replacing:
-        return
-    owner = _owner(depsgraph)
-    for key, scene in list(_scenes.items()):
-        if key[0] == owner:
-            scene.mark(depsgraph)
-
-
-def _owner(depsgraph):
-    return depsgraph.scene.session_uid, depsgraph.view_layer.name
-
-
-def _key(space, depsgraph):
-    """What decides which objects a viewport shows. Its own settings are no data of the scene, and nothing promises that
-    Blender calls `view_update` for them."""
-    if space is None:
-        return _owner(depsgraph), ()
-    types = tuple(getattr(space, name) for name in _SHOWN_TYPES)
-    local = space.local_view is not None, space.use_local_collections
-    return _owner(depsgraph), (types, local, space.as_pointer() if any(local) else 0)
-
-
-# Redraws of viewports that wait for another thread
-
-
-def _watch_jobs():
-    """Have the viewports redrawn whose scenes have been prepared, once they are."""
-    if not bpy.app.background and not bpy.app.timers.is_registered(_look):
-        bpy.app.timers.register(_look, first_interval=_LOOK_SECONDS)
-
-
-def _look():
-    """Called by a timer; seconds until the next look, None for none. What has been prepared is told once: a viewport
-    that pauses does not take it."""
-    preparing = [scene for scene in _scenes.values() if scene.preparing]
-    prepared = [scene for scene in preparing if scene.prepared]
-    for scene in prepared:
-        scene.tag_redraw()
-    return _LOOK_SECONDS if len(prepared) < len(preparing) else None
-
-
-# Blender's handlers
-
-
-@bpy.app.handlers.persistent
-def _begin_replacing(*_arguments):
-    """Undo and redo replace any data."""
-    global _replacing
-    _replacing = True
-
-
-@bpy.app.handlers.persistent
-def _begin_loading(*_arguments):
-    """Opening a file: nothing of this one comes back."""
-    viewport_kept.let_go()
-    _begin_replacing()
-
-
-@bpy.app.handlers.persistent
-def _end_replacing(*_arguments):
-    """Nothing is as it was."""
-    global _replacing
-    _replacing = False
-    for scene in list(_scenes.values()):
-        scene.forget()
-
-
-def _handlers():
-    """(list of Blender's, function) of each handler."""
-    for name in ("undo_pre", "redo_pre"):
-        yield getattr(bpy.app.handlers, name), _begin_replacing
-    yield bpy.app.handlers.load_pre, _begin_loading
-    for name in ("undo_post", "redo_post", "load_post", "load_post_fail"):
-        yield getattr(bpy.app.handlers, name), _end_replacing
-
-
-def register():
-    global _replacing
-    _replacing = False  # where factory settings disabled the add-on, nobody has told it of the end
-    for handlers, function in _handlers():
-        handlers.append(function)
-    viewport_kept.register()
-
-
-def unregister():
-    for handlers, function in _handlers():
-        handlers.remove(function)
-    viewport_kept.unregister()
-    if bpy.app.timers.is_registered(_look):
-        bpy.app.timers.unregister(_look)

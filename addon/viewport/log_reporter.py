@@ -2,6 +2,9 @@
 """Where a viewport's messages go."""
 
 import logging
+import traceback
+
+from ..failures import is_defect, sentence_of
 
 log = logging.getLogger(__name__)
 
@@ -24,6 +27,12 @@ class LogReporter:
         if message not in self._now and message not in self._before:
             log.log(self.LEVELS[level], message)
         self._now[message] = level
+
+    def explain(self, error):
+        """What a user is told of an exception. The traceback of one that is Conic's fault goes to the log."""
+        if is_defect(error):
+            self("ERROR", "".join(traceback.format_exception(error)))
+        return sentence_of(error)
 
     @property
     def warnings(self):

@@ -19,10 +19,15 @@ class Job:
         return self._done.wait(seconds)
 
     def result(self):
-        """What the function returned, or raise what it raised; once it is done."""
-        if self._error is not None:
-            raise self._error
-        return self._result
+        """What the function returned, once it is done. What it raised is raised here, the first time: kept, it would
+        keep all that its traceback refers to, until Python looks for garbage, in whichever thread."""
+        error, self._error = self._error, None
+        if error is None:
+            return self._result
+        try:
+            raise error
+        finally:
+            del error  # which this frame is in the traceback of
 
     def _run(self):
         try:

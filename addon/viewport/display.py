@@ -4,17 +4,16 @@ transform, and nothing is read back."""
 
 from dataclasses import dataclass, replace
 from functools import cache
-from pathlib import Path
 
 import gpu
 import numpy as np
 from gpu_extras.batch import batch_for_shader
 
-from .engine.devices.blender_gpu import blank_texture
-from .engine.film import UNENDED_ALPHA
-from .engine.outlines import DISPLAY_GAMMA
+from ..engine.devices.blender_gpu import blank_texture
+from ..engine.film import UNENDED_ALPHA
+from ..engine.glsl_functions import SHADER_FOLDER
+from ..engine.outlines import DISPLAY_GAMMA
 
-_SHADERS = Path(__file__).parent / "shaders"
 _VERTEX = "void main() { uv = corner; gl_Position = vec4(place.xy + corner * place.zw, 0.0, 1.0); }"
 _CORNERS = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0))
 
@@ -61,7 +60,7 @@ def _shader():
     info.define("DISPLAY_GAMMA", str(DISPLAY_GAMMA))
     info.fragment_out(0, "VEC4", "out_color")
     info.vertex_source(_VERTEX)
-    info.fragment_source((_SHADERS / "display_frag.glsl").read_text())
+    info.fragment_source((SHADER_FOLDER / "display_frag.glsl").read_text())
     shader = gpu.shader.create_from_info(info)
     return shader, batch_for_shader(shader, "TRI_STRIP", {"corner": _CORNERS})
 

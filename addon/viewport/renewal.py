@@ -3,7 +3,7 @@
 
 import threading
 
-from .background_job import Job
+from .job import Job
 
 
 class Renewal:

@@ -7,16 +7,16 @@ import weakref
 
 import bpy
 
-from . import viewport_log, viewport_tracing
-from .engine import Session
+from ..engine import Session
+from ..statistics import primitives_text, publish
+from ..wording import counted
+from . import history, tracing
+from .display import Display
 from .log_reporter import LogReporter
-from .statistics import primitives_text, publish
-from .viewport_display import Display
-from .viewport_pace import MOST, RedrawPace
-from .viewport_picture import ViewportPicture
-from .viewport_scenes import explain, scene_of
-from .viewport_view import view_of
-from .wording import counted
+from .pace import MOST, RedrawPace
+from .picture import ViewportPicture
+from .scenes import scene_of
+from .view import view_of
 
 _TRACING = 0.8  # of a redraw's seconds; the rest is for showing what was traced, and for Blender
 _LEAST = 0.5  # of a redraw's seconds, where what came before took long
@@ -30,7 +30,6 @@ class ViewportSession:
         self.display, self.pace = Display(), RedrawPace()
         self.scene = None  # the `ViewportScene`
         self.picture = None  # the `ViewportPicture` of what is loaded
-        self.version = None  # of what is loaded, in the picture
         self.error = ""
         self.paused = False
         self._tracing = False  # whether there is something left for `trace`
@@ -75,7 +74,7 @@ class ViewportSession:
     def trace(self):
         """Go on with the picture between redraws, until there is something to see: a redraw is asked for then. Whether
         there is more to trace before. Call it in the main thread, where the GPU context is active."""
-        if not self._tracing or self.version != self.scene.loaded.version:
+        if not self._tracing or not self.picture.is_of_what_is_loaded:
             return False  # nothing is left, or a redraw will follow
         self.pace.go_on()
         try:
@@ -91,7 +90,7 @@ class ViewportSession:
 
     def _fail(self, error):
         """What was drawn has ended half way: the next redraw begins anew."""
-        self.error = explain(error, self.scene.report if self.scene else LogReporter())
+        self.error = (self.scene.report if self.scene else LogReporter()).explain(error)
         self.picture, self._tracing = None, False
 
     def _renew(self, depsgraph, view, space):
@@ -117,23 +116,20 @@ class ViewportSession:
         if scene is not self.scene:
             if self.scene:
                 self.scene.sessions.discard(self)
-            self.scene, self.picture, self.version = scene, None, None
+            self.scene, self.picture = scene, None
             scene.attach(self)
 
     def _show(self, view, started):
         """Show what is there, of a new view what can be traced at once; whether the picture has begun anew. `started`:
         when this redraw has."""
-        loaded = self.scene.loaded
         if self.picture is None:
-            self.picture = ViewportPicture(Session(self.scene.device, loaded))
+            self.picture = ViewportPicture(Session(self.scene.device, self.scene.loaded))
         picture = self.picture
-        same_scene = self.version == loaded.version
-        began = not same_scene or picture.view is None or picture.view.key != view.key
+        began = not picture.is_of(view)
         if began:
             self.pace.changed()
-            self.version = loaded.version
             spent = time.perf_counter() - started
-            picture.begin(view, max(_TRACING * self._frame - spent, _LEAST * self._frame), same_scene)
+            picture.begin(view, max(_TRACING * self._frame - spent, _LEAST * self._frame))
             self._publish()
         elif bpy.app.background and not self.paused:
             picture.advance(self._frame)
@@ -141,15 +137,15 @@ class ViewportSession:
         self._shown = picture.sample
         self._tracing = not (picture.finished or self.paused)
         if self._tracing:
-            viewport_tracing.go_on(self, quiet=began)
+            tracing.go_on(self, quiet=began)
         if picture.sample and not self.paused:
             self.scene.improve(view)
         return began
 
     def _log(self, began, seconds):
         picture = self.picture
-        record = viewport_log.Draw(began, picture.keeps, picture.step, picture.sample, picture.finished, seconds)
-        viewport_log.records.append(record)
+        record = history.Draw(began, picture.keeps, picture.step, picture.sample, picture.finished, seconds)
+        history.records.append(record)
 
     def _publish(self):
         """The first picture of what is loaded is there: show what it is made of and what it cost."""
@@ -163,15 +159,15 @@ class ViewportSession:
 
     def _tell(self):
         """Show in the viewport how far it is, and that there is something to read in the console."""
+        if self.picture and not self.error:
+            for warning in (*self.scene.loaded.warnings, *self.picture.session.warnings):
+                self.scene.report("WARNING", warning)
         text = self.error or " | ".join(self._state())
         self._engine().update_stats("Conic", text)
 
     def _state(self):
         """How far it is, in some words each."""
-        report = self.scene.report
         if self.picture:
-            for warning in (*self.scene.loaded.warnings, *self.picture.session.warnings):
-                report("WARNING", warning)
             drawn = self.scene.loaded.drawn
             yield f"Sample {min(self.picture.sample + 1, drawn.settings.samples)}/{drawn.settings.samples}"
             yield primitives_text(drawn.packed.statistics["primitives"])
@@ -180,5 +176,5 @@ class ViewportSession:
             yield "Paused"
         elif not self.scene.settled:
             yield "Loading"
-        if report.warnings:
-            yield f"{counted(report.warnings, 'warning')}, see the console"
+        if warnings := self.scene.report.warnings:
+            yield f"{counted(warnings, 'warning')}, see the console"

@@ -3,10 +3,13 @@
 import time
 from types import SimpleNamespace
 
+import bpy
 import pytest
 
-from addon import viewport_tracing
-from addon.viewport_pace import MOST, MOST_AT_ONCE, MOST_UNSEEN, RedrawPace
+from addon.viewport import tracing
+from addon.viewport.pace import MOST, MOST_AT_ONCE, MOST_UNSEEN, RedrawPace
+from addon.viewport.picture import STEPS, ViewportPicture
+from tests.blender.viewport.stand_in import draws
 
 
 @pytest.fixture
@@ -83,14 +86,12 @@ class Traced:
 
 
 @pytest.fixture
-def tracing(clock, monkeypatch):
-    """viewport_tracing as in a window; the timer is called by hand."""
-    monkeypatch.setattr(
-        viewport_tracing, "bpy", SimpleNamespace(app=SimpleNamespace(background=False, timers=Timers()))
-    )
-    yield viewport_tracing
-    viewport_tracing._new.clear()
-    viewport_tracing._due.clear()
+def in_window(clock, monkeypatch):
+    """Tracing as with a window; the timer is called by hand."""
+    monkeypatch.setattr(tracing, "bpy", SimpleNamespace(app=SimpleNamespace(background=False, timers=Timers())))
+    yield
+    tracing._new.clear()
+    tracing._due.clear()
 
 
 class Timers:
@@ -104,7 +105,7 @@ class Timers:
         return function in self.registered
 
 
-def test_tracing_waits_until_blender_has_seen_what_happened(tracing, clock):
+def test_tracing_waits_until_blender_has_seen_what_happened(in_window, clock):
     session = Traced(2)
     tracing.go_on(session, quiet=True)
     clock[0] += 1.0  # a slow redraw
@@ -118,7 +119,7 @@ def test_tracing_waits_until_blender_has_seen_what_happened(tracing, clock):
     assert tracing._trace() is None and len(session.calls) == 2
 
 
-def test_viewports_are_traced_in_turn(tracing, clock):
+def test_viewports_are_traced_in_turn(in_window, clock):
     sessions = Traced(3), Traced(2)
     for session in sessions:
         tracing.go_on(session, quiet=False)
@@ -130,8 +131,28 @@ def test_viewports_are_traced_in_turn(tracing, clock):
     assert [abs(a - b) for a, b in turns[:4]] == [1, 0, 1, 0] and not any(session.slices for session in sessions)
 
 
-def test_a_viewport_that_is_gone_is_not_traced(tracing):
+def test_a_viewport_that_is_gone_is_not_traced(in_window):
     session = Traced(5)
     tracing.go_on(session, quiet=False)
     del session
     assert tracing._trace() is None
+
+
+def test_a_redraw_is_asked_for_when_there_is_something_to_see(view, monkeypatch):
+    """The whole picture first, and the last sample; slices that give neither ask for none until it is time."""
+    bpy.context.scene.conic.preview_samples = 3
+    view.settle()
+    view.look_from(1.0)
+    with monkeypatch.context() as patch:
+        patch.setattr(ViewportPicture, "_choose_step", lambda picture, seconds: STEPS[-1])
+        view.redraw()
+    assert draws()[-1].step > 1
+    shown = []
+    while not view.session.picture.finished:
+        before = view.engine.redraws
+        while view.session.trace():
+            assert view.engine.redraws == before
+        assert view.engine.redraws == before + 1
+        shown.append((view.session.picture.step, view.session.picture.sample))
+        view.session.pace.begin()  # the redraw
+    assert shown[-1] == (1, 3) and (1, 1) in shown
