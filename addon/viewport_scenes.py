@@ -20,6 +20,7 @@ from .sync.scene_sync import SyncStatistics, sync_settings
 from .viewport_renewal import Renewal
 
 _LOOK_SECONDS = 0.01  # between two looks whether a scene has been prepared
+_NEARLY_FINISHED = 2.0  # seconds that a picture still takes: good trees come after it, where rays need the processor
 _SHOWN_TYPES = sorted(
     name for name in bpy.types.SpaceView3D.bl_rna.properties.keys() if name.startswith("show_object_viewport_")
 )
@@ -120,13 +121,14 @@ class ViewportScene:
             self.error = explain(error, self.report)
             viewport_log.records.append(viewport_log.Load(error=self.error))
 
-    def improve(self, view):
-        """A picture of a `View` is there. If nothing else is to be done, cut strands finer that are too coarse for it,
-        and build good trees in the place of those that were built quickly."""
+    def improve(self, view, seconds_left):
+        """A picture of a `View` is there, and finished in about `seconds_left`. If nothing else is to be done, cut
+        strands finer that are too coarse for it, and build good trees in the place of those that were built quickly."""
         if self.settled and not self.error and self.reader.is_too_coarse(view.camera, view.size[1]):
             self.stale = True
             self.tag_redraw()
-        if self.loaded.can_improve and self.settled and not (self._better or self.error):
+        waits = 0.0 < seconds_left < _NEARLY_FINISHED
+        if self.loaded.can_improve and self.settled and not (self._better or self.error or waits):
             self._better = Renewal(self.loaded, self.loaded.prepare_better)
             _watch_jobs()
 
