@@ -19,7 +19,9 @@ class NewTextures:
     """
 
     def __init__(self, device, update, before, in_pieces):
-        self.device, self.update, self.in_pieces = device, update, in_pieces
+        self.device, self.update = device, update
+        # Pieces are copied twice more: not where there is nothing to draw meanwhile.
+        self.in_pieces = in_pieces and before is not None
         self.textures, self.rooms = (dict(before.textures), dict(before.rooms)) if before else ({}, {})
         self._tables = before.packed.table_texels if before else None
         for name in update.packed.residency.unused_textures():
@@ -32,6 +34,7 @@ class NewTextures:
             self._add_tables(upload)
         elif not here and not self.in_pieces:
             self.put(name, texels)
+            yield
         elif upload.count:
             room = upload.first + upload.count
             if not here:

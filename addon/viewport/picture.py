@@ -43,6 +43,11 @@ class ViewportPicture:
         return self._seconds(1)
 
     @property
+    def seconds_left(self):
+        """What the samples that it does not have yet take, as far as is known."""
+        return max(self._samples - self.sample, 0) * self.sample_seconds
+
+    @property
     def finished(self):
         """Whether nothing is left to be drawn, as long as nobody asks for more samples."""
         return self.sample >= self._samples

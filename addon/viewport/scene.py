@@ -15,6 +15,8 @@ from . import history, kept_scenes, waiting
 from .log_reporter import LogReporter
 from .renewal import Renewal
 
+_NEARLY_FINISHED = 2.0  # seconds that a picture still takes: good trees come after it, where rays need the processor
+
 
 class ViewportScene:
     """Blender's scene as viewports show it, read again when it has changed. Use it where the GPU context is active.
@@ -108,15 +110,15 @@ class ViewportScene:
         if self.preparing:
             waiting.watch(self)
 
-    def improve(self, view):
-        """A picture of a `View` is there. If nothing else is to be done, cut strands finer that are too coarse for it,
-        or build good trees in the place of those that were built quickly."""
+    def improve(self, view, seconds_left):
+        """A picture of a `View` is there, and finished in about `seconds_left`. If nothing else is to be done, cut
+        strands finer that are too coarse for it, or build good trees in the place of those that were built quickly."""
         if not self.settled or self.error:
             return
         if self.reader.is_too_coarse(view.camera, view.size[1]):
             self.stale = True
             self.tag_redraw()
-        elif self.loaded.can_improve and not self._better:
+        elif self.loaded.can_improve and not self._better and not 0.0 < seconds_left < _NEARLY_FINISHED:
             self._better = Renewal(self.loaded, self.loaded.prepare_better)
             waiting.watch(self)
 

@@ -13,7 +13,7 @@ from ..wording import counted
 from . import history, tracing
 from .display import Display
 from .log_reporter import LogReporter
-from .pace import MOST, RedrawPace
+from .pace import MOST_BEFORE_FIRST, RedrawPace
 from .picture import ViewportPicture
 from .scenes import scene_of
 from .view import view_of
@@ -97,8 +97,13 @@ class ViewportSession:
         """Bring the scene nearer to Blender's data. Without a picture nobody waits for another redraw."""
         if not self.scene.settled:
             self.pace.changed()
-        seconds, before = self.pace.seconds(self._frame) if self.picture else MOST, self.scene.loaded.drawn
-        self.scene.renew(depsgraph, view, space, seconds, max(0.5 * seconds, self.pace.overhead))
+        before = self.scene.loaded.drawn
+        if self.picture:
+            seconds = self.pace.seconds(self._frame)
+            patience = max(0.5 * seconds, self.pace.overhead)
+        else:
+            seconds = patience = MOST_BEFORE_FIRST
+        self.scene.renew(depsgraph, view, space, seconds, patience)
         if self.scene.prepared:
             self.tag_redraw()
         if self.scene.loaded.drawn is not before:
@@ -139,7 +144,7 @@ class ViewportSession:
         if self._tracing:
             tracing.go_on(self, quiet=began)
         if picture.sample and not self.paused:
-            self.scene.improve(view)
+            self.scene.improve(view, picture.seconds_left)
         return began
 
     def _log(self, began, seconds):
