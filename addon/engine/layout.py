@@ -393,6 +393,16 @@ FRAME = _record(
     ("light_node_count", "float", ""),
     ("light_cut_end", "float", "the node after those of the lamps"),
     ("light_cut_angle", "float", "lamps that are seen under less count as one in a picture of one sample"),
+    ("outside_sphere", "vec3", "spheres outside of the trees: index of the first, low and high part; number"),
+    ("unused_sphere", "float", ""),
+    ("outside_cylinder", "vec3", ""),
+    ("unused_cylinder", "float", ""),
+    ("outside_cone", "vec3", ""),
+    ("unused_cone", "float", ""),
+    ("outside_disc", "vec3", ""),
+    ("unused_disc", "float", ""),
+    ("outside_triangle", "vec3", ""),
+    ("unused_triangle", "float", ""),
 )
 
 RECORDS = (
@@ -423,6 +433,9 @@ RECORDS = (
 
 #: Numbers of the kinds: those of primitives are also the labels of the tree's leaves. Planes stand in no tree.
 KINDS = ("sphere", "cylinder", "cone", "disc", "triangle", "instance", "plane")
+
+#: Kinds of primitives.
+TREE_KINDS = KINDS[: KINDS.index("instance")]
 
 #: Third number of a sphere's `rotation` where the other two are the uv of all of it: no rotation is as long.
 FIXED_UV = 4.0

@@ -29,7 +29,9 @@ _SHADOW_SURFACES = 32
 _SHADOW_FEATURES = {"TRANSPARENT": "TRANSPARENT_SHADOWS", "TINTED": "TINTED_SHADOWS"}
 
 #: Features of things of which a scene may have none.
-_SPARE_FEATURES = frozenset(f"HAS_{kind.upper()}" for kind in layout.KINDS if kind != "instance") | {"HAS_INSTANCES"}
+_SPARE_FEATURES = frozenset(
+    name for name in shader_source.FEATURES if name.startswith(tuple(f"HAS_{kind.upper()}" for kind in layout.KINDS))
+) | {"HAS_INSTANCES", "HAS_QUADRIC_LEAVES"}
 #: With these the shader must know whether there are instances: shapes in the world's space have no visibility.
 _ASK_FOR_INSTANCES = {"HAS_VISIBILITY", "HAS_SHADOW_CATCHER", "HAS_LIGHT_LINKING"}
 

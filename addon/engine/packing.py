@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import instance_packing, layout, table_packing
+from . import instance_packing, layout, leaves, table_packing
 from .attribute_packing import AttributeWriter
 from .changes import Change
 from .errors import SceneError, StoppedError
@@ -118,6 +118,7 @@ class _Packer:
         low, high = layout.split_index(root)
         self.frame |= {
             **self.lights.frame,
+            **self._outside(trees),
             "plane_count": len(planes),
             "root": low,
             "root_high": high,
@@ -208,9 +209,11 @@ class _Packer:
         kinds, written = len(BY_KIND), set(written.tolist())
         for number in {number for _, number, kind in attributes.first if kind < kinds} - written:
             resident = self.residency.geometries[number]
-            parts = dict(self.plan.geometries[number].kinds())
+            parts, outside = self.plan.parts(number)
             for label, part, order in rows_by_kind(resident.kept.form.bvh, parts):
                 attributes.write((number, label), part, order)
+            for label, part in outside.items():
+                attributes.write((number, label), part, np.arange(len(part)))
             ranges = resident.attributes | attributes.ranges(number)
             self.residency.geometries[number] = replace(resident, attributes=ranges)
         if not is_same(self.before.planes.planes, self.scene.planes):
@@ -355,6 +358,12 @@ class _Packer:
             return layout.PLANE.zeros(0), layout.PLANE_SURFACE.zeros(0)
         return planes.transformed(Similarity(np.eye(3), 1.0, -self.origin)).records()
 
+    def _outside(self, trees):
+        """Members of the uniform block that say where the primitives lie that stand outside of the trees."""
+        low, high = layout.split_index(trees.bases[0])
+        counts = np.where(self.plan.outside, self.plan.counts[0], 0)
+        return {f"outside_{cls.kind}": row for cls, row in zip(BY_KIND, np.stack([low, high, counts], 1), strict=True)}
+
     def _directory(self, trees, attributes):
         """Records that say where the values of attributes lie."""
         first, now, count = dict(attributes.first), self.residency, len(self.plan.geometries)
@@ -385,7 +394,7 @@ class _Packer:
     def _features(self, planes):
         totals = self.plan.counts.sum(axis=0)
         features = {f"HAS_{cls.kind.upper()}" for cls, count in zip(BY_KIND, totals, strict=True) if count}
-        features |= self.materials.features()
+        features |= leaves.features(self.plan) | self.materials.features()
         if len(planes):
             features.add("HAS_PLANE")
         if self.plan.placed:

@@ -23,6 +23,9 @@ _EMPTY = Geometry(name="none")
 #: Blocks of instances that are checked together, where they are small.
 _BLOCKS = 256
 
+#: Kinds of which the world's shapes have at most `_FEW` stand outside of its tree, where there are `_MANY` shapes.
+_FEW, _MANY = 4, 4096
+
 #: Where planes stand in the directory of attributes, (geometry number, kind number): in world space.
 PLANE_ATTRIBUTES = (0, layout.KINDS.index("plane"))
 
@@ -59,6 +62,25 @@ class Plan:
         """Number of the geometry with the most primitives; -1 where the upper tree has more leaves."""
         sizes = self.counts.sum(axis=1)
         return int(np.argmax(sizes)) if sizes.max() >= self.leaves else -1
+
+    @cached_property
+    def outside(self):
+        """(K,) bool: the kinds of which the world's shapes stand in no tree: each ray tests them first. A floor below
+        a million spheres would have a leaf's test of triangles beside that of spheres, and vector processors do both
+        whenever they do one."""
+        counts = self.counts[0]
+        return (counts > 0) & (counts <= _FEW) & (counts.sum() >= _MANY)
+
+    @cached_property
+    def counts_in_trees(self):
+        """(G, K) int64: number of primitives that stand in trees."""
+        return np.concatenate([np.where(self.outside, 0, self.counts[:1]), self.counts[1:]])
+
+    def parts(self, number):
+        """A geometry's primitives by kind number: those in its tree, those outside of it."""
+        outside = self.outside if number == 0 else np.zeros(len(BY_KIND), bool)
+        parts = list(self.geometries[number].kinds())
+        return tuple({label: part for label, part in parts if outside[label] == out} for out in (False, True))
 
     @cached_property
     def leaves(self):

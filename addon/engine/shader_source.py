@@ -23,7 +23,10 @@ from .glsl_functions import SHADER_FOLDER
 #: Names that shader files may test.
 FEATURES = frozenset(
     [f"HAS_{kind.upper()}" for kind in layout.KINDS if kind != "instance"]
+    + [f"HAS_{kind.upper()}_{where}" for kind in layout.TREE_KINDS for where in ("LEAVES", "OUTSIDE")]
     + [
+        "HAS_QUADRIC_LEAVES",
+        "HAS_SPHERE_RUNS",
         "HAS_INSTANCES",
         "HAS_PROGRAMS",
         "VORONOI_LOOKUP3",

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import bvh, layout
+from . import bvh, layout, leaves
 from .batches import batches, joined
 from .errors import SceneError
 from .node_packing import move_nodes, write_nodes
@@ -18,10 +18,6 @@ from .primitives import BY_KIND, Similarity
 from .residency import BuiltTree, KeptTree, Resident, Upload
 from .threads import each_piece
 from .timing import timed
-
-#: Most primitives in a leaf, and what testing one costs; see `bvh.build`.
-_LEAF_SIZE = 8
-_INTERSECTION_COST = np.array([cls.intersection_cost for cls in BY_KIND], np.float32)
 
 #: Trees of so many primitives are kept for refits: smaller ones are built in no time, many at once.
 _WORTH_KEEPING = 4096
@@ -77,8 +73,7 @@ class TreePacker:
             self._add_large(number, attributes, replaced_by(number))
 
     def _add_large(self, number, attributes, replaced):
-        geometry = self.plan.geometries[number]
-        parts = dict(geometry.kinds())
+        parts, outside = self.plan.parts(number)
         move = self._move if self.plan.in_world[number] else None
         tree, quick = None, False
         if replaced is not None:
@@ -91,8 +86,19 @@ class TreePacker:
         with timed(self.seconds, "records"):
             for label, part, order in rows_by_kind(tree, parts):
                 attributes.write((number, label), part, order)
+            bounds = self._add_outside(number, outside, tree.bounds, move, attributes)
             root = self._add_nodes(number, tree)
-        self._added_one(number, BuiltTree(tree.bounds, root, len(tree), tree.depth, cost), attributes, kept, quick)
+        self._added_one(number, BuiltTree(bounds, root, len(tree), tree.depth, cost), attributes, kept, quick)
+
+    def _add_outside(self, number, parts, bounds, move, attributes):
+        """Write the records of what stands outside of a geometry's tree with these `bounds`; the bounds of all."""
+        for label, part in parts.items():
+            order = np.arange(len(part))
+            self._write_records(number, label, part, order, move)
+            attributes.write((number, label), part, order)
+            lower, upper = _bounds([part], move)
+            bounds = np.stack([np.minimum(bounds[0], lower.min(axis=0)), np.maximum(bounds[1], upper.max(axis=0))])
+        return bounds
 
     def _added_one(self, number, tree, attributes, kept=None, quick=False):
         geometry = self.plan.geometries[number]
@@ -122,7 +128,7 @@ class TreePacker:
                 labels[rows[label]] = label
         with timed(self.seconds, "tree"):
             forest = self._forest(numbers, lower, upper, labels, counts)
-            costs = bvh.sah_costs(forest, intersection_cost=_INTERSECTION_COST).tolist()
+            costs = bvh.sah_costs(forest, intersection_cost=leaves.INTERSECTION_COST).tolist()
         with timed(self.seconds, "records"):
             place = np.empty(len(lower), np.int64)
             for label, part in parts.items():
@@ -137,7 +143,8 @@ class TreePacker:
             self._added_one(number, tree, attributes)
 
     def _forest(self, numbers, lower, upper, labels, counts):
-        options = {"leaf_size": _LEAF_SIZE, "intersection_cost": _INTERSECTION_COST}
+        kinds = self.plan.counts_in_trees[numbers].sum(axis=0)
+        options = {"leaf_size": leaves.sizes(kinds), "intersection_cost": leaves.INTERSECTION_COST}
         try:
             return bvh.build_forest(lower, upper, labels, counts, **options)
         except ValueError:
@@ -183,10 +190,12 @@ class TreePacker:
         with timed(self.seconds, "bounds"):
             lower, upper = _bounds(parts.values(), move)
             labels = np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])
+        counts = np.bincount(labels, minlength=len(BY_KIND))
         with timed(self.seconds, "tree"), _naming(name):
             if quick:
-                return bvh.quick_build(lower, upper, labels, leaf_size=_LEAF_SIZE)
-            return bvh.build(lower, upper, labels, leaf_size=_LEAF_SIZE, intersection_cost=_INTERSECTION_COST)
+                return bvh.quick_build(lower, upper, labels, leaf_size=leaves.sizes(counts))
+            options = {"leaf_size": leaves.sizes(counts), "intersection_cost": leaves.costs(counts)}
+            return bvh.build(lower, upper, labels, **options)
 
     def _improves(self, number):
         """Whether the good tree of a geometry takes the place of its quick one."""
@@ -302,7 +311,7 @@ def _naming(geometry):
 
 
 def _cost(tree):
-    return bvh.sah_cost(tree, intersection_cost=_INTERSECTION_COST)
+    return bvh.sah_cost(tree, intersection_cost=leaves.INTERSECTION_COST)
 
 
 def rows_by_kind(tree, parts):

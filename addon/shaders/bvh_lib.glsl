@@ -8,6 +8,7 @@
  * less than any of them, and an integer's minimum is one instruction everywhere, where a float's may have to mind NaN. */
 #include "ray_lib.glsl"
 #include "primitive_lib.glsl"
+#include "outside_lib.glsl"
 #include <node>
 #ifdef HAS_INSTANCES
 #include <instance>
@@ -91,11 +92,15 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
   hit.index = 0;
   hit.instance = -1;
   primitive_planes_hit(int(frame_plane_count), world_ray, hit);
+  bool sees_shapes = world_ray.kind <= VISIBILITY_ALL; /* only instances and planes are catchers or in groups */
+  if (sees_shapes) {
+    outside_hit(world_ray, hit);
+  }
   if (frame_root_count < 0.5 || (any_hit && hit.kind >= 0)) {
     return hit;
   }
 #ifndef HAS_INSTANCES
-  if (world_ray.kind > VISIBILITY_ALL) { /* only instances and planes are catchers or in groups */
+  if (!sees_shapes) {
     return hit;
   }
 #endif

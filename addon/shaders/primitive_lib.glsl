@@ -36,33 +36,82 @@ struct Hit {
     } \
   }
 
-/* Test the primitives of one leaf and keep the nearest hit. */
+#define PRIMITIVE_TESTS(KIND, read, test, first, count) \
+  for (int i = first; i < first + count; i++) PRIMITIVE_TEST(KIND, read, test, i)
+
+#ifdef HAS_QUADRIC_LEAVES
+/* Test a cylinder, a cone or a sphere: a cylinder without a length. */
+void primitive_quadric_hit(int kind, int index, Ray ray, inout Hit hit)
+{
+  vec3 base = vec3(0.0);
+  vec3 axis = vec3(0.0);
+  float base_radius = 1.0;
+  float apex_radius = 1.0;
+#ifdef HAS_SPHERE_LEAVES
+  if (kind == KIND_SPHERE) {
+    Sphere sphere = read_sphere(index);
+    base = sphere.center;
+    base_radius = sphere.radius;
+    apex_radius = sphere.radius;
+  }
+#endif
+#ifdef HAS_CYLINDER_LEAVES
+  if (kind == KIND_CYLINDER) {
+    Cylinder cylinder = read_cylinder(index);
+    base = cylinder.base;
+    axis = cylinder.axis;
+    base_radius = cylinder.radius;
+    apex_radius = cylinder.radius;
+  }
+#endif
+#ifdef HAS_CONE_LEAVES
+  if (kind == KIND_CONE) {
+    Cone cone = read_cone(index);
+    base = cone.base;
+    axis = cone.axis;
+    base_radius = cone.base_radius;
+    apex_radius = cone.apex_radius;
+  }
+#endif
+  bool outside_seen = base_radius + apex_radius > 0.0;
+  float t = quadric_hit(base, axis, abs(base_radius), abs(apex_radius), outside_seen, ray, hit.t);
+  if (t < hit.t) {
+    hit.t = t;
+    hit.kind = kind;
+    hit.index = index;
+  }
+}
+#endif
+
+/* Test the primitives of one leaf and keep the nearest hit. Vector processors run all of it whatever the leaf holds: one test
+ * for several kinds is faster than one for each. */
 void primitive_leaf_hit(int kind, int first, int count, Ray ray, inout Hit hit)
 {
-  int end = first + count;
-#ifdef HAS_SPHERE
+#ifdef HAS_QUADRIC_LEAVES
+  if (kind <= KIND_CONE) {
+#ifdef HAS_SPHERE_RUNS
+    for (int i = first; i < first + count; i++) {
+      primitive_quadric_hit(kind, i, ray, hit);
+    }
+#else
+    primitive_quadric_hit(kind, first, ray, hit);
+#endif
+  }
+#else
+#ifdef HAS_SPHERE_LEAVES
   if (kind == KIND_SPHERE) {
-    for (int i = first; i < end; i++) PRIMITIVE_TEST(KIND_SPHERE, read_sphere, sphere_hit, i)
+    PRIMITIVE_TESTS(KIND_SPHERE, read_sphere, sphere_hit, first, count)
   }
 #endif
-#ifdef HAS_CYLINDER
-  if (kind == KIND_CYLINDER) {
-    for (int i = first; i < end; i++) PRIMITIVE_TEST(KIND_CYLINDER, read_cylinder, cylinder_hit, i)
-  }
 #endif
-#ifdef HAS_CONE
-  if (kind == KIND_CONE) {
-    for (int i = first; i < end; i++) PRIMITIVE_TEST(KIND_CONE, read_cone, cone_hit, i)
-  }
-#endif
-#ifdef HAS_DISC
+#ifdef HAS_DISC_LEAVES
   if (kind == KIND_DISC) {
-    for (int i = first; i < end; i++) PRIMITIVE_TEST(KIND_DISC, read_disc, disc_hit, i)
+    PRIMITIVE_TESTS(KIND_DISC, read_disc, disc_hit, first, count)
   }
 #endif
-#ifdef HAS_TRIANGLE
+#ifdef HAS_TRIANGLE_LEAVES
   if (kind == KIND_TRIANGLE) {
-    for (int i = first; i < end; i++) PRIMITIVE_TEST(KIND_TRIANGLE, read_triangle, triangle_hit, i)
+    PRIMITIVE_TESTS(KIND_TRIANGLE, read_triangle, triangle_hit, first, count)
   }
 #endif
 }

@@ -3,6 +3,7 @@
 
 #define TWO_PI 6.283185307179586
 #define QUADRIC_NO_ROOT 1e30
+#define QUADRIC_NO_HEIGHT 1e-30
 
 /* Roots of a t^2 + 2 b t + c: where the ray enters the body (the value falls) and where it leaves; for a > 0 in ascending,
  * for a < 0 in descending order. `discriminant` is b^2 - a c, not negative, given apart since b^2 - a c itself loses digits.
@@ -28,7 +29,7 @@ vec2 quadric_roots(float a, float b, float c, float discriminant)
 float quadric_hit(vec3 base, vec3 along, float base_radius, float apex_radius, bool outside_seen, Ray ray, float t_max)
 {
   float height = length(along);
-  float per_height = 1.0 / height;
+  float per_height = 1.0 / max(height, QUADRIC_NO_HEIGHT); /* without a height it is a sphere */
   vec3 axis = per_height * along;
   float slope = per_height * (apex_radius - base_radius);
   vec3 from_middle = (ray.origin - base) - 0.5 * along;

@@ -1,39 +1,10 @@
 /* What happens where a ray meets a surface: paper 2.4, step 2. Light that is given off, and the two rays that go on from
  * there. */
 #include "shadow_lib.glsl"
+#include "path_lib.glsl"
 #ifdef HAS_SEEN_LAMPS
 #include "lamp_lib.glsl"
 #endif
-
-/* A ray of the path and what it stands for. A camera ray has met nothing but surfaces that do not bend it. */
-struct Path {
-  Ray ray;
-  float t_max;
-  vec3 weight; /* its share of the pixel */
-  int depth;   /* the eye ray is 1 */
-  ivec4 media; /* the bodies it is inside of */
-  float density;       /* of the rays of the lobe that it left, in its direction, times 2 pi; 0: the lights were asked already */
-  float length_before; /* of the ray before the surfaces that it has passed since it was bent */
-#ifdef HAS_LIGHT_PATH
-  int passed; /* surfaces that did not bend its rays */
-#endif
-};
-
-Path shading_path(Ray ray, float t_max, vec3 weight, int depth, ivec4 media)
-{
-  Path path;
-  path.ray = ray;
-  path.t_max = t_max;
-  path.weight = weight;
-  path.depth = depth;
-  path.media = media;
-  path.density = SAMPLING_CERTAIN;
-  path.length_before = 0.0;
-#ifdef HAS_LIGHT_PATH
-  path.passed = 0;
-#endif
-  return path;
-}
 
 /* The rays that go on from a surface, each of them if its `..s` holds. */
 struct Scattered {
@@ -360,7 +331,7 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
   }
   if (scattered.reflects) {
     Ray ray = shading_reflected(surface, mirrored, face);
-    scattered.reflected = shading_path(ray, 1e30, mirror, path.depth + 1, path.media);
+    scattered.reflected = path_make(ray, 1e30, mirror, path.depth + 1, path.media);
 #ifdef HAS_ROUGHNESS
     scattered.reflected.density = density_mirrored;
 #endif
@@ -372,7 +343,7 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
     int kind = eta == 1.0 ? path.ray.kind : RAY_TRANSMISSION;
     Ray ray = shading_refracted(surface, bent, face, kind);
     bool straight = eta == 1.0;
-    scattered.refracted = shading_path(ray, 1e30, through, path.depth + 1, beyond);
+    scattered.refracted = path_make(ray, 1e30, through, path.depth + 1, beyond);
     scattered.refracted.length_before = straight ? path.length_before + hit.t : 0.0;
 #ifdef HAS_ROUGHNESS
     bool shadows_pass = optics_largest(shadow_passed(material)) > 0.0;

@@ -55,9 +55,9 @@ Traced trace_sample()
 {
   float t_max;
   Ray eye = camera_ray(PIXEL, t_max);
-  Path path = shading_path(eye, t_max, vec3(1.0), 1, medium_outside());
+  Path path = path_make(eye, t_max, vec3(1.0), 1, medium_outside());
   bool path_ends = false; /* no path goes on when the lights are done */
-  Path stack[PATH_STACK_SIZE + 1];
+  WaitingPath stack[PATH_STACK_SIZE + 1];
   int stacked = 0;
   Lit lit;
   Shadow shadow;
@@ -139,7 +139,7 @@ Traced trace_sample()
         radiance = mix(radiance, alpha * frame_depth_cue_color, cue);
         cued = true;
         if (frame_depth_cue_background > 0.5) { /* what is behind everything shows through what is far */
-          path = shading_path(eye, 0.0, vec3(cue * alpha), 1, medium_outside());
+          path = path_make(eye, 0.0, vec3(cue * alpha), 1, medium_outside());
           path_ends = false;
           continue;
         }
@@ -207,7 +207,7 @@ Traced trace_sample()
       light = turns;
 #endif
 #ifdef HAS_TRANSMISSION
-      stack[stacked] = scattered.refracted; /* it waits only where both rays go on; see bvh_traverse */
+      stack[stacked] = path_wait(scattered.refracted); /* it waits only where both rays go on; see bvh_traverse */
       if (scattered.refracts && scattered.reflects) {
         if (stacked < PATH_STACK_SIZE) {
           stacked++;
@@ -240,7 +240,8 @@ Traced trace_sample()
     }
 #ifdef HAS_TRANSMISSION
     if (path_ends && stacked > 0) {
-      path = stack[--stacked];
+      stacked--;
+      path = path_resume(stack[stacked]);
       path_ends = false;
     }
 #endif

@@ -128,6 +128,42 @@ def test_mixed_scenes(device, count, instances, seed):
 
 
 @each_seed
+@pytest.mark.parametrize("instances", [0, 2])
+def test_few_of_a_kind_stand_outside_of_the_tree(device, instances, seed):
+    rng = np.random.default_rng([seed, instances])
+    scene, oracle = scenes.mixed(rng, 0, instances)
+    many = Spheres(center=rng.uniform(-1.0, 1.0, (5000, 3)), radius=rng.uniform(0.005, 0.03, 5000))
+    for part in (many, *scenes.parts(rng, 12)):
+        part = scenes.numbered(scene, part)
+        scene.add(part)
+        oracle.add(int(part.material[0]), part)
+    packed = pack(scene, device.max_texture_size)
+    few = {"CYLINDER", "CONE", "DISC", "TRIANGLE"}
+    assert {f"HAS_{kind}_OUTSIDE" for kind in few} <= packed.features
+    assert ("HAS_CONE_LEAVES" in packed.features) == (instances > 0)
+    _, hit = assert_as_brute_force(device, scene, oracle, *rays_for(rng, oracle))
+    assert hit.mean() > 0.1
+
+
+@each_seed
+def test_spheres_alone_and_beside_cylinders(device, seed):
+    """Beside cylinders a leaf holds one sphere, without any it may hold several; one program draws both."""
+    rng = np.random.default_rng(seed)
+    scene, oracle = scenes.empty_scene(), scenes.Oracle()
+    for part in scenes.parts(rng, 240)[:2]:
+        part = scenes.numbered(scene, part)
+        scene.add(part)
+        oracle.add(int(part.material[0]), part)
+    heap = scenes.slots(SPECIAL["heap"](rng), 0)
+    first = scenes.new_materials(scene, len(heap))
+    matrix = scenes.random_affine(rng)
+    scene.instances.append(Instances(Geometry(heap), matrix, tuple(range(first, first + len(heap)))))
+    oracle.add(first, heap, matrix)
+    assert {"HAS_QUADRIC_LEAVES", "HAS_SPHERE_RUNS"} <= pack(scene, device.max_texture_size).features
+    assert_as_brute_force(device, scene, oracle, *rays_for(rng, oracle), unsure_at_most=0.05)
+
+
+@each_seed
 def test_instances_alone_with_planes(device, seed):
     rng = np.random.default_rng(seed)
     scene, oracle = scenes.mixed(rng, 0, 12)

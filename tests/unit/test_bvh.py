@@ -261,6 +261,16 @@ def test_clustering_takes_few_rounds(name):
     assert len(topology.left) == topology.batches[-1].stop and len(topology.batches) < 12 * np.log2(len(lo))
 
 
+@BUILDERS
+def test_leaf_sizes_may_differ_by_label(builder):
+    """Even where boxes are the same, so that a larger leaf costs nothing."""
+    rng = np.random.default_rng(9)
+    lo, label = np.repeat(rng.random((300, 3)), 8, axis=0), np.repeat(rng.integers(0, 3, 300), 8)
+    bvh = builder(lo, lo + 0.05, label, leaf_size=np.array([8, 1, 2]))
+    check(bvh, lo, lo + 0.05, label, leaf_size=8)
+    assert [bvh.count[bvh.is_leaf & (bvh.label == kind)].max() for kind in range(3)] == [8, 1, 2]
+
+
 def test_what_a_test_costs_may_differ_by_label():
     """Labels whose tests are cheap have large leaves; those whose are dear, single primitives."""
     rng = np.random.default_rng(8)

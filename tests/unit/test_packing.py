@@ -238,11 +238,28 @@ def test_planes_only_and_nothing_at_all():
 
 def test_features_are_those_that_the_scene_uses():
     scene = scene_of(spheres(3), world=World((1, 1, 1), 0), images=[Image(np.zeros((2, 2, 4)))])
-    assert pack(scene, LIMIT).features == {"HAS_SPHERE", "HAS_PROGRAMS"}
+    assert pack(scene, LIMIT).features == {"HAS_SPHERE", "HAS_SPHERE_LEAVES", "HAS_PROGRAMS"}
     scene.materials = [Material(diffuse=surface_image(0), absorption=(0, 1, 0))]
     scene.instances = [Instances(Geometry(Triangles(p0=[[0, 0, 0]], p1=[[1, 0, 0]], p2=[[0, 1, 0]])), np.eye(4))]
-    expected = {"HAS_SPHERE", "HAS_TRIANGLE", "HAS_PROGRAMS", "HAS_ABSORPTION", "HAS_INSTANCES"}
-    assert pack(scene, LIMIT).features == expected
+    kinds = {"HAS_SPHERE", "HAS_SPHERE_LEAVES", "HAS_TRIANGLE", "HAS_TRIANGLE_LEAVES"}
+    assert pack(scene, LIMIT).features == kinds | {"HAS_PROGRAMS", "HAS_ABSORPTION", "HAS_INSTANCES"}
+
+
+def test_few_of_a_kind_beside_many_stand_outside_of_the_tree():
+    """Their records are there, and where they lie; no leaf leads to them. The box of all holds them."""
+    floor = Triangles(p0=[[-9, -9, -2], [9, 9, -2]], p1=[[9, -9, -2], [-9, 9, -2]], p2=[[9, 9, -2], [-9, -9, -2]])
+    center = np.random.default_rng(0).uniform(-1, 1, (4096, 3))
+    for count, outside in ((4096, True), (4000, False)):
+        scene = scene_of(Spheres(center=center[:count], radius=0.01), floor)
+        packed = pack(scene, LIMIT)
+        assert {kind for kind, _, _ in leaves(packed)} == ({"sphere"} if outside else {"sphere", "triangle"})
+        assert ("HAS_TRIANGLE_OUTSIDE" in packed.features) == outside != ("HAS_TRIANGLE_LEAVES" in packed.features)
+        assert np.allclose(packed.bounds, [[-9, -9, -2], [9, 9, 1]], atol=0.05)
+        found = records(packed, layout.TRIANGLE, 2)
+        assert np.array_equal(np.sort(found["p0"], axis=0), np.sort(floor.p0, axis=0))
+        if outside:
+            assert packed.frame["outside_triangle"].tolist() == [0, 0, 2]
+            assert packed.frame["outside_sphere"][2] == 0
 
 
 def test_instances_share_geometry_and_materials():

@@ -26,7 +26,7 @@ def build(
     hi: np.ndarray,
     label: np.ndarray | None = None,
     *,
-    leaf_size: int = LEAF_SIZE,
+    leaf_size: int | np.ndarray = LEAF_SIZE,
     traversal_cost: float = TRAVERSAL_COST,
     intersection_cost: float | np.ndarray = INTERSECTION_COST,
 ) -> Bvh:
@@ -36,7 +36,7 @@ def build(
         lo, hi: (n, 3) float32 or float64 corners of the boxes, lo <= hi. n may be 0.
         label: (n,) small integers >= 0, for instance the kinds of the primitives; a leaf holds one label.
             Default: all 0.
-        leaf_size: most primitives in a leaf; fewer where the costs say so.
+        leaf_size: most primitives in a leaf, or (labels,), of each label; fewer where the costs say so.
         traversal_cost: of visiting a node (testing the boxes of both children), in the unit of
         intersection_cost: of testing one primitive; or (labels,), of each label.
 
@@ -53,7 +53,7 @@ def build_forest(
     label: np.ndarray | None,
     counts: np.ndarray,
     *,
-    leaf_size: int = LEAF_SIZE,
+    leaf_size: int | np.ndarray = LEAF_SIZE,
     traversal_cost: float = TRAVERSAL_COST,
     intersection_cost: float | np.ndarray = INTERSECTION_COST,
 ) -> Forest:
@@ -75,7 +75,7 @@ def assemble(
     lo: np.ndarray,
     hi: np.ndarray,
     label: np.ndarray | None,
-    leaf_size: int,
+    leaf_size: int | np.ndarray,
     traversal_cost: float,
     intersection_cost: float | np.ndarray,
 ) -> Bvh:
@@ -98,10 +98,10 @@ def assemble(
 
 
 def checked(
-    lo: np.ndarray, hi: np.ndarray, label: np.ndarray | None, leaf_size: int
+    lo: np.ndarray, hi: np.ndarray, label: np.ndarray | None, leaf_size: int | np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Boxes and labels as the builders use them; raises ValueError as `build`."""
-    if leaf_size < 1:
+    if np.min(leaf_size) < 1:
         raise ValueError(f"leaf_size must be at least 1, not {leaf_size}")
     lo, hi = checked_boxes(lo, hi)
     return lo, hi, checked_labels(label, len(lo))

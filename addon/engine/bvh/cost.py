@@ -17,6 +17,12 @@ def cost_by_label(intersection_cost: float | np.ndarray, label: np.ndarray) -> n
     return cost if cost.ndim else np.full(int(label.max()) + 1, cost)
 
 
+def leaf_size_by_label(leaf_size: int | np.ndarray, label: np.ndarray) -> np.ndarray:
+    """(labels,) int32: most primitives in a leaf of each label, likewise."""
+    size = np.asarray(leaf_size, np.int32)
+    return size if size.ndim else np.full(int(label.max()) + 1, size)
+
+
 def sah_cost(
     bvh: Bvh, traversal_cost: float = TRAVERSAL_COST, intersection_cost: float | np.ndarray = INTERSECTION_COST
 ) -> float:

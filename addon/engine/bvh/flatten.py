@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .cost import cost_by_label
+from .cost import cost_by_label, leaf_size_by_label
 from .refit import put_around
 from .topology import Topology
 from .tree import MAX_DEPTH, MIXED, Bvh, Forest
@@ -23,7 +23,7 @@ def flatten(
     lo: np.ndarray,
     hi: np.ndarray,
     label: np.ndarray,
-    leaf_size: int,
+    leaf_size: int | np.ndarray,
     traversal_cost: float,
     intersection_cost: float | np.ndarray,
 ) -> Bvh:
@@ -42,7 +42,7 @@ def flatten_all(
     lo: np.ndarray,
     hi: np.ndarray,
     label: np.ndarray,
-    leaf_size: int,
+    leaf_size: int | np.ndarray,
     traversal_cost: float,
     intersection_cost: float | np.ndarray,
 ) -> Forest:
@@ -64,11 +64,11 @@ def flatten_all(
 def _choose_leaves(
     topology: Topology,
     label: np.ndarray,
-    leaf_size: int,
+    leaf_size: int | np.ndarray,
     traversal_cost: float,
     intersection_cost: float | np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Bottom up: make a leaf of every subtree of one label and `leaf_size` primitives at most, where both its
+    """Bottom up: make a leaf of every subtree of one label and at most its `leaf_size` of primitives, where both its
     children are leaves and one is no dearer.
 
     Returns, for every node of the topology, the numbers of primitives and of leaves below it (1 within a leaf
@@ -79,7 +79,7 @@ def _choose_leaves(
     kind = np.empty(nodes, np.int32)
     kind[:n] = label
     cost = np.empty(nodes, np.float32)
-    single = cost_by_label(intersection_cost, label)
+    single, most = cost_by_label(intersection_cost, label), leaf_size_by_label(leaf_size, label)
     cost[:n] = topology.area[:n] * single[label]
     for batch in topology.batches:
         left, right = topology.left[batch], topology.right[batch]
@@ -91,7 +91,7 @@ def _choose_leaves(
         whole = area * total * single[kind[node]]  # what is MIXED is no leaf, whatever it would cost
         below = leaves[left] + leaves[right]
         # Both children must be leaves, so that "one leaf below" means "in a leaf" all the way down.
-        leaf = (below == 2) & (kind[node] >= 0) & (total <= leaf_size) & (whole <= split)
+        leaf = (below == 2) & (kind[node] >= 0) & (total <= most[kind[node]]) & (whole <= split)
         count[node], cost[node], leaves[node] = total, np.where(leaf, whole, split), np.where(leaf, 1, below)
     return count, leaves, kind
 

@@ -18,7 +18,7 @@ def sweep_build(
     hi: np.ndarray,
     label: np.ndarray | None = None,
     *,
-    leaf_size: int = LEAF_SIZE,
+    leaf_size: int | np.ndarray = LEAF_SIZE,
     traversal_cost: float = TRAVERSAL_COST,
     intersection_cost: float | np.ndarray = INTERSECTION_COST,
 ) -> Bvh:

@@ -38,6 +38,8 @@ class Primitives:
     attribute_places = 1
     #: Of testing a ray against one, where visiting a node of a tree costs 1: texels are most of it, a node has four.
     intersection_cost = 0.5
+    #: The same where memory counts more, since there are very many of them.
+    intersection_cost_of_many = 0.5
     columns: tuple[Column, ...] = ()
     record = None
     surface_record = None

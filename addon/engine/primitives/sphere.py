@@ -14,7 +14,7 @@ class Spheres(Primitives):
     """
 
     kind = "sphere"
-    intersection_cost = 0.25  # one texel; a leaf holds some, and a sphere takes less than 48 bytes, its tree included
+    intersection_cost_of_many = 0.25  # a leaf holds some, and a sphere takes less than 48 bytes, its tree included
     record = SPHERE
     surface_record = SPHERE_SURFACE
     columns = (

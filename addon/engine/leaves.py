@@ -1,0 +1,39 @@
+"""What the leaves of trees hold, and which of the shader's tests that asks for."""
+
+import numpy as np
+
+from . import layout
+from .primitives import BY_KIND
+
+#: Most primitives in a leaf.
+_SIZE = 8
+#: Cylinders and cones stand alone in their leaves, and so do spheres beside them: one test serves all three, without a
+#: loop, which vector processors leave only when the fullest of their leaves is done.
+_QUADRICS = np.isin(layout.KINDS[: len(BY_KIND)], ("cylinder", "cone"))
+_ROUND = _QUADRICS | np.isin(layout.KINDS[: len(BY_KIND)], "sphere")
+#: From so many primitives in a geometry on memory counts more than a little time.
+_MANY = 1 << 17
+
+INTERSECTION_COST = np.array([cls.intersection_cost for cls in BY_KIND], np.float32)
+_INTERSECTION_COST_OF_MANY = np.array([cls.intersection_cost_of_many for cls in BY_KIND], np.float32)
+
+
+def sizes(counts):
+    """`leaf_size` (K,) of `bvh.build` for geometries with (K,) primitives by kind in all."""
+    return np.where(_ROUND & counts[_QUADRICS].any(), 1, _SIZE)
+
+
+def costs(counts):
+    """`intersection_cost` (K,) of `bvh.build`, likewise."""
+    return _INTERSECTION_COST_OF_MANY if counts.sum() >= _MANY else INTERSECTION_COST
+
+
+def features(plan):
+    """The features of the shader that say which kinds are tested where."""
+    counts = plan.counts_in_trees
+    found = {f"HAS_{BY_KIND[label].kind.upper()}_LEAVES" for label in np.flatnonzero(counts.any(axis=0))}
+    found |= {f"HAS_{BY_KIND[label].kind.upper()}_OUTSIDE" for label in np.flatnonzero(plan.outside)}
+    quadrics, spheres = counts[:, _QUADRICS].any(axis=1), counts[:, _ROUND & ~_QUADRICS].any(axis=1)
+    if quadrics.any():
+        found |= {"HAS_QUADRIC_LEAVES"} | ({"HAS_SPHERE_RUNS"} if (spheres & ~quadrics).any() else set())
+    return found
