@@ -8,7 +8,7 @@ import pytest
 from addon.engine import LoadedScene, loaded_scene
 from addon.engine.packing import pack
 from addon.viewport import scenes, waiting
-from addon.viewport.pace import MOST
+from addon.viewport.pace import MOST_BEFORE_FIRST
 from addon.viewport.scene import ViewportScene
 from tests.blender.viewport.gate import Gate
 from tests.blender.viewport.stand_in import WIDTH, loads, sphere_at
@@ -103,8 +103,8 @@ def test_without_a_picture_loading_may_take_longer_at_a_time(view, monkeypatch):
 
     monkeypatch.setattr(ViewportScene, "renew", watch)
     view.redraw()
-    assert given == [MOST]
+    assert given == [MOST_BEFORE_FIRST]
     view.settle()
     view.look_from(1.0)
     view.redraw()
-    assert given[-1] < MOST
+    assert given[-1] < MOST_BEFORE_FIRST
