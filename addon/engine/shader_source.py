@@ -72,6 +72,10 @@ FEATURES = frozenset(
 
 #: Features that others need.
 NEEDS = {
+    f"HAS_{kind.upper()}_{where}": {f"HAS_{kind.upper()}"}
+    for kind in layout.TREE_KINDS
+    for where in ("LEAVES", "OUTSIDE")
+} | {
     "HAS_AMBIENT_OCCLUSION": {"HAS_HEMISPHERE_LIGHT"},
     "HAS_DEPTH_CUE": {"HAS_GUIDE"},
     "HAS_EMITTERS": {"HAS_LIGHT_SHAPES"},

@@ -18,6 +18,9 @@
 #ifdef HAS_PLANE
 #include "plane_lib.glsl"
 #endif
+#ifdef HAS_QUADRIC_LEAVES
+#include "quadric_lib.glsl"
+#endif
 
 struct Hit {
   float t;

@@ -245,6 +245,13 @@ Traced trace_sample()
       path_ends = false;
     }
 #endif
+#ifndef HAS_DEPTH_CUE
+    /* As above, where no light has to be asked before: what is worked on in step need not go through all of it once more. */
+    ended = path_ends && light == turns;
+    if (ended) {
+      break;
+    }
+#endif
   }
   Traced traced;
   traced.color = vec4(radiance, ended ? alpha : UNENDED_ALPHA);
