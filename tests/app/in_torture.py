@@ -24,7 +24,7 @@ from mathutils import Quaternion
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import addon
-from addon import viewport_scenes
+from addon.viewport import scenes
 from tests.app.live_view import Screen, fill_window, point_at_view, run_in_window, view_parts
 from tests.app.torture_edits import FORGETTING, Edits, operate, spaces, start_scene
 
@@ -61,7 +61,7 @@ def keep_settings():
 
 def settled():
     """Whether rendered views have nothing to load. While another thread prepares it, nothing is drawn."""
-    return all(scene.settled for scene in viewport_scenes._scenes.values() if scene.sessions)
+    return all(scene.settled for scene in scenes._scenes.values() if scene.sessions)
 
 
 def picture():

@@ -215,7 +215,7 @@ def test_pictures_are_of_what_was_loaded_last(rested, entry):
         before = tuple(background.inputs["Color"].default_value), background.inputs["Strength"].default_value
         background.inputs["Strength"].default_value = 1.0
         bpy.data.objects["Plane"].hide_viewport = True
-        shown = next(iter(viewport_scenes._scenes.values()))
+        shown = next(iter(scenes._scenes.values()))
 
         def edit():
             "Another world, seen at once: nothing is drawn between redraws meanwhile."
