@@ -193,8 +193,7 @@ def test_a_window_closes_while_the_view_traces(rested):
             with bpy.context.temp_override(window=bpy.context.window_manager.windows[-1]):
                 bpy.ops.wm.window_close()
         """)
-        time.sleep(0.3)
-        assert rested.run(f"result = {session}.picture.sample") > drawn, "it goes on"
+        rested.wait_until(lambda drawn=drawn: rested.run(f"result = {session}.picture.sample") > drawn)  # it goes on
     assert rested.run(f"result = {session}.error") == ""
     rested.run(f"bpy.context.scene.conic.preview_samples = {samples}")
     rested.rest()

@@ -102,6 +102,24 @@ def test_what_forms_has_no_dark_rim(view):
     assert 0 < drawn.sum() < drawn.size and pixels[drawn].min() > 0.99
 
 
+def test_what_is_coarse_is_seen_until_all_that_is_finer_is_there(view):
+    view.settle()
+    bpy.context.scene.conic.preview_frame_seconds = 0.001
+    view.session.picture.session.pace._costs[:] = 1.0
+    view.settle()
+    view.look_from(0.5)
+    parts = set()
+    while view.redraw():
+        assert (view.pixels()[..., 3] == 1.0).all(), parts
+        session = view.session.picture.session
+        session._film.pace._costs[:] = 1.0  # it stops within the film
+        if view.session.picture.sample == 0 and not session.film.finished:
+            parts.add((view.session.picture.step, session.film.reached))
+            steps = [round(layer.pixel / (6.0 / WIDTH)) for layer in view.session.picture.layers]
+            assert view.session.picture.step in steps, "what there is of the finer one is shown"
+    assert len(parts) > 5
+
+
 def test_large_pixels(view):
     view.engine.pixel_size = 4
     pixels = view.settle()
