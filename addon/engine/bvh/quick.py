@@ -29,7 +29,8 @@ def quick_build(
     curve = sorting_order(code)
     code = code[curve]
     most = leaf_size_by_label(leaf_size, label)
-    start, curve = _leaf_starts(cell_starts(code, int(most.max())), curve, label, most)
+    cell = cell_starts(code, int(most[np.flatnonzero(np.bincount(label))].max()))
+    start, curve = _leaf_starts(cell, curve, label, most)
     order, run, rank = runs(curve, label)
     size = np.diff(start, append=len(curve))
     leaves, cut = np.array([len(start)]), _cut_by_codes(code[start])
