@@ -37,3 +37,11 @@ def features(plan):
     if quadrics.any():
         found |= {"HAS_QUADRIC_LEAVES"} | ({"HAS_SPHERE_RUNS"} if (spheres & ~quadrics).any() else set())
     return found
+
+
+def places_outside(plan, bases):
+    """Members of the uniform block that say where the primitives lie that stand outside of the trees; `bases` (K,):
+    index of the first record of each kind of the world's shapes."""
+    low, high = layout.split_index(bases)
+    rows = np.stack([low, high, np.where(plan.outside, plan.counts[0], 0)], axis=1)
+    return {f"outside_{cls.kind}": row for cls, row in zip(BY_KIND, rows, strict=True)}

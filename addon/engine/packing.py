@@ -118,7 +118,7 @@ class _Packer:
         low, high = layout.split_index(root)
         self.frame |= {
             **self.lights.frame,
-            **self._outside(trees),
+            **leaves.places_outside(self.plan, trees.bases[0]),
             "plane_count": len(planes),
             "root": low,
             "root_high": high,
@@ -357,12 +357,6 @@ class _Packer:
         if planes is None:
             return layout.PLANE.zeros(0), layout.PLANE_SURFACE.zeros(0)
         return planes.transformed(Similarity(np.eye(3), 1.0, -self.origin)).records()
-
-    def _outside(self, trees):
-        """Members of the uniform block that say where the primitives lie that stand outside of the trees."""
-        low, high = layout.split_index(trees.bases[0])
-        counts = np.where(self.plan.outside, self.plan.counts[0], 0)
-        return {f"outside_{cls.kind}": row for cls, row in zip(BY_KIND, np.stack([low, high, counts], 1), strict=True)}
 
     def _directory(self, trees, attributes):
         """Records that say where the values of attributes lie."""
