@@ -21,6 +21,13 @@ def each(function: Callable, items: Iterable, *, worth_it: bool) -> list:
         return list(pool.map(function, items))
 
 
+def both(first: Callable, second: Callable) -> tuple:
+    """The results of two functions that are called at the same time: what of one is in no pieces, the other fills."""
+    with ThreadPoolExecutor(1) as pool:
+        other = pool.submit(second)
+        return first(), other.result()
+
+
 def pieces(count: int) -> Iterator[slice]:
     """Slices of `PIECE` rows that cover `count` rows."""
     return (slice(start, min(start + PIECE, count)) for start in range(0, count, PIECE))

@@ -16,7 +16,7 @@ from .errors import SceneError
 from .node_packing import move_nodes, write_nodes
 from .primitives import BY_KIND, Similarity
 from .residency import BuiltTree, KeptTree, Resident, Upload
-from .threads import each_piece
+from .threads import both, each_piece
 from .timing import timed
 
 #: Trees of so many primitives are kept for refits: smaller ones are built in no time, many at once.
@@ -82,7 +82,11 @@ class TreePacker:
         if tree is None:
             good = self._good_tree(number)
             quick = self.quick and good is None and self.plan.counts[number].sum() >= QUICK_FROM
-            tree, kept, cost = self._built(number, parts, move, quick, good)
+            if quick:
+                tree, kept, cost = self._built_quickly(number, parts, move)
+            if tree is None:
+                quick = False
+                tree, kept, cost = self._built(number, parts, move, good)
         with timed(self.seconds, "records"):
             for label, part, order in rows_by_kind(tree, parts):
                 attributes.write((number, label), part, order)
@@ -171,12 +175,12 @@ class TreePacker:
         token, moved, tree = geometry.tree or (None, None, None)
         return tree if token is geometry.token and moved == self.moved(number) else None
 
-    def _built(self, number, parts, move, quick, tree):
+    def _built(self, number, parts, move, tree):
         """Build a tree, where there is none, and write the records of its primitives; (tree, what is kept of it, its
         cost or 0)."""
         geometry = self.plan.geometries[number]
         if tree is None:
-            tree = self._built_anew(geometry.name, parts, move, quick)
+            tree = self._built_anew(geometry.name, parts, move)
             if self._improves(number):
                 geometry.tree = geometry.token, self.moved(number), tree
         with timed(self.seconds, "tree"):
@@ -186,16 +190,27 @@ class TreePacker:
                 self._write_records(number, label, part, order, move)
         return tree, KeptTree(bvh.Form(tree), cost) if self.keep else None, cost
 
-    def _built_anew(self, name, parts, move, quick):
+    def _built_anew(self, name, parts, move):
         with timed(self.seconds, "bounds"):
             lower, upper = _bounds(parts.values(), move)
-            labels = np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])
-        counts = np.bincount(labels, minlength=len(BY_KIND))
         with timed(self.seconds, "tree"), _naming(name):
-            if quick:
-                return bvh.quick_build(lower, upper, labels, leaf_size=leaves.sizes(counts))
+            counts = _counts(parts)
             options = {"leaf_size": leaves.sizes(counts), "intersection_cost": leaves.costs(counts)}
-            return bvh.build(lower, upper, labels, **options)
+            return bvh.build(lower, upper, _labels(parts), **options)
+
+    def _built_quickly(self, number, parts, move):
+        """As `_built`, a tree that is made in a fraction of the time; none where a box is not finite."""
+        with timed(self.seconds, "bounds"):
+            spans = _spans(parts.values(), move)
+            if not np.isfinite(spans).all():
+                return None, None, 0.0  # building says what is wrong
+        with timed(self.seconds, "tree"):
+            quick = bvh.QuickTree(spans, _labels(parts), leaves.sizes(_counts(parts)))
+            del spans
+            spans, form = both(lambda: self._write_in_order(number, parts, move, quick), quick.form)
+            tree = form.around(spans)
+            cost = _cost(tree)
+        return tree, KeptTree(form, cost) if self.keep else None, cost
 
     def _improves(self, number):
         """Whether the good tree of a geometry takes the place of its quick one."""
@@ -220,21 +235,16 @@ class TreePacker:
         def write(rows):
             piece = part.take(order[rows])
             piece = piece.transformed(move) if move else piece
-            lower, upper = bvh.rounded_outward(*piece.bounds())
-            np.negative(lower.T, out=spans[:3, rows])
-            spans[3:, rows] = upper.T
+            _fill_spans(piece, spans[:, rows])
             _copy_records(piece.records(), hits[rows], surfaces[rows])
 
         each_piece(write, len(order))
 
     def _refitted(self, number, parts, move, kept):
-        """Put a tree that is kept around other primitives and write their records, both in one go: most of the time
-        goes into bringing them in order. As `_built`; no tree where a new one would be much better."""
+        """Put a tree that is kept around other primitives and write their records. As `_built`; no tree where a new
+        one would be much better."""
         with timed(self.seconds, "refit"):
-            spans, end = np.empty((6, len(kept.form.bvh.order)), np.float32), 0
-            for label, part, order in rows_by_kind(kept.form.bvh, parts):
-                start, end = end, end + len(order)
-                self._write_moved(number, label, part, order, move, spans[:, start:end])
+            spans = self._write_in_order(number, parts, move, kept.form.bvh)
             if not np.isfinite(spans).all():
                 return None, None, 0.0  # building says what is wrong
             tree = kept.form.around(spans)
@@ -243,6 +253,15 @@ class TreePacker:
             return None, None, 0.0
         self.refitted += 1
         return tree, kept, cost
+
+    def _write_in_order(self, number, parts, move, tree):
+        """Write the records of primitives in the order of a tree; the spans (6, n) of their boxes, in this order and
+        made in the same go: most of the time goes into bringing them in order."""
+        spans, end = np.empty((6, len(tree.order)), np.float32), 0
+        for label, part, order in rows_by_kind(tree, parts):
+            start, end = end, end + len(order)
+            self._write_moved(number, label, part, order, move, spans[:, start:end])
+        return spans
 
     def _records(self, number, label, part):
         """The two arrays of records that are to be uploaded, from those of a part of a geometry on."""
@@ -327,6 +346,40 @@ def _copy_records(records, *targets):
     """Copy arrays of records to others (n,) as floats, which is faster than field by field."""
     for record, target in zip(records, targets, strict=True):
         target.view(np.float32)[:] = record.view(np.float32)
+
+
+def _labels(parts):
+    """(n,) int32 kind numbers of the primitives of all `parts`, by kind number."""
+    return np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])
+
+
+def _counts(parts):
+    """(K,) int64 numbers of primitives by kind number."""
+    counts = np.zeros(len(BY_KIND), np.int64)
+    counts[list(parts)] = [len(part) for part in parts.values()]
+    return counts
+
+
+def _spans(parts, move):
+    """(6, n) float32 spans of the boxes of all rows of several kinds, as `bvh.Form` takes them."""
+    spans, start = np.empty((6, sum(map(len, parts))), np.float32), 0
+    for part in parts:
+        of_part = spans[:, start : start + len(part)]
+
+        def write(rows, part=part, of_part=of_part):
+            piece = part.take(rows)
+            _fill_spans(piece.transformed(move) if move else piece, of_part[:, rows])
+
+        each_piece(write, len(part))
+        start += len(part)
+    return spans
+
+
+def _fill_spans(piece, spans):
+    """Write the `spans` (6, n) of the boxes of primitives."""
+    lower, upper = bvh.rounded_outward(*piece.bounds())
+    np.negative(lower.T, out=spans[:3])
+    spans[3:] = upper.T
 
 
 def _bounds(parts, move):

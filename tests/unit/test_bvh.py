@@ -11,6 +11,7 @@ from hypothesis.extra.numpy import arrays
 from addon.engine.bvh import (
     MAX_DEPTH,
     Form,
+    QuickTree,
     build,
     build_forest,
     quick_build,
@@ -21,12 +22,13 @@ from addon.engine.bvh import (
     sweep_build,
 )
 from addon.engine.bvh.agglomerate import agglomerate
-from addon.engine.bvh.boxes import half_areas, morton_codes, morton_order, spans, take_spans
+from addon.engine.bvh.boxes import half_areas, morton_codes, morton_order, sorted_codes, spans, take_spans
 from addon.engine.bvh.build import TOP
 from addon.engine.bvh.flatten import flatten
 from addon.engine.bvh.quick import cell_starts
 from addon.engine.bvh.topology import Topology
 from addon.engine.bvh.tree import FAR, MIXED
+from addon.engine.threads import LARGE
 
 BUILDERS = pytest.mark.parametrize("builder", [build, sweep_build, quick_build])
 BY_COST = pytest.mark.parametrize("builder", [build, sweep_build])
@@ -351,6 +353,31 @@ def test_quick_leaves_of_equal_codes_are_full_enough():
 
 
 @SCENES
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e35])
+def test_a_quick_tree_in_two_parts_is_the_one_in_one(scene, scale):
+    """Whatever the scale of its spans, and of many labels; so many that sorting and bits are done in pieces."""
+    rng = np.random.default_rng(0)
+    lo, hi = (corner.astype(np.float32) for corner in scene(150_000, rng))
+    label = rng.integers(0, 3, len(lo)).astype(np.int32)
+    whole = quick_build(lo, hi, label, leaf_size=8)
+    span = np.concatenate([-lo.T, hi.T])
+    quick = QuickTree(span * np.float32(2.0 ** np.round(np.log2(scale))), label, 8)
+    found = quick.form().around(span[:, quick.order])
+    check(whole, lo, hi, label, 8)
+    for name in ("order", "run", "child", "count", "label", "boxes"):
+        assert np.array_equal(getattr(found, name), getattr(whole, name)), name
+
+
+def test_many_codes_are_sorted_as_few_are():
+    """By pieces of what has its first 16 bits in common; equal ones stay in order."""
+    rng = np.random.default_rng(0)
+    for bits in (63, 50, 20, 3):  # in the end all are in one piece
+        code = rng.integers(0, 1 << bits, 2 * LARGE, np.uint64)
+        order, ascending = sorted_codes(code)
+        assert np.array_equal(order, np.argsort(code, kind="stable")) and np.array_equal(ascending, code[order])
+
+
+@SCENES
 def test_quality_against_halving(scene):
     """The sweep itself is no straw man: it beats cutting a Morton curve in halves on every scene."""
     n = 4096
@@ -366,7 +393,8 @@ def test_quality_against_halving(scene):
     assert sah_cost(sweep_build(lo, hi)) < 0.95 * sah_cost(halved)
 
 
-def test_a_far_outlier_does_not_spoil_the_rest():
+@pytest.mark.parametrize("builder", [build, quick_build])
+def test_a_far_outlier_does_not_spoil_the_rest(builder):
     """The ground as a huge sphere: the other 30 000 boxes still lie in cells of their own."""
     lo, hi = uniform(30_000, np.random.default_rng(0))
 
@@ -376,9 +404,9 @@ def test_a_far_outlier_does_not_spoil_the_rest():
         area = x * y + y * z + z * x
         return np.sum((area * np.where(count > 0, 0.5 * count, 1))[area < 10])
 
-    alone = cost_of_the_rest(build(lo, hi))
+    alone = cost_of_the_rest(builder(lo, hi))
     lo[-1], hi[-1] = -2e8, 0
-    assert cost_of_the_rest(build(lo, hi)) < 1.1 * alone
+    assert cost_of_the_rest(builder(lo, hi)) < 1.1 * alone
 
 
 @SCENES

@@ -135,6 +135,36 @@ def test_quick_trees_stand_until_better_ones_are_asked_for():
     assert not last.change & Change.GEOMETRY and "nodes" not in last.uploads
 
 
+def test_a_quick_tree_has_every_primitive_where_its_leaf_says():
+    """Of two kinds, near an origin that is far: records and boxes are made in one go, in the order of the tree."""
+    far = np.array([3e6, 0, 0])
+    base = spheres(QUICK_FROM, seed=1, offset=far).center
+    rods = Cylinders(base=base, apex=base + 0.1, radius=0.01)
+    balls = spheres(QUICK_FROM, offset=far)
+    packed = pack(scene_of(balls, rods, eye=far), LIMIT, quick=True)
+    nodes = records(packed, layout.NODE, packed.statistics["bvh"]["nodes"])
+    center = records(packed, layout.SPHERE, QUICK_FROM)["center"]
+    assert np.allclose(np.sort(center + packed.origin, axis=0), np.sort(balls.center, axis=0), atol=0.5)
+    radius, covered = records(packed, layout.SPHERE, QUICK_FROM)["radius"], np.zeros(QUICK_FROM, int)
+    for child in (0, 1):
+        kind, count, high = layout.unpack_leaf(nodes[f"leaf_{child}"])
+        first = nodes[f"first_{child}"].astype(np.int64) + (high << layout.LOW_BITS)
+        leaf = np.flatnonzero((count > 0) & (kind == layout.KINDS.index("sphere")))
+        rows = np.concatenate([np.arange(f, f + n) for f, n in zip(first[leaf], count[leaf], strict=True)])
+        of = np.repeat(leaf, count[leaf])
+        covered[rows] += 1
+        assert (center[rows] - radius[rows, None] >= nodes[f"lower_{child}"][of]).all()
+        assert (center[rows] + radius[rows, None] <= nodes[f"upper_{child}"][of]).all()
+    assert (covered == 1).all()
+
+
+def test_a_box_that_no_quick_tree_can_hold_is_named():
+    center = spheres(QUICK_FROM).center.copy()
+    center[7] = 1e39
+    with pytest.raises(SceneError, match=r"boxes: 1 of 16384 are not finite .* primitive 7:"):
+        pack(scene_of(Spheres(center=center, radius=0.1)), LIMIT, quick=True)
+
+
 def test_a_good_tree_is_built_once_even_if_it_comes_too_late(monkeypatch):
     """What was packed with it is thrown away: an edit came first, of something else or of the geometry."""
     built, build = [], bvh.build

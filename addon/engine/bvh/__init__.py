@@ -4,7 +4,7 @@ from .boxes import rounded_outward
 from .build import build, build_forest
 from .cost import sah_cost, sah_costs, statistics
 from .form import Form
-from .quick import quick_build
+from .quick import QuickTree, quick_build
 from .refit import refit
 from .sweep import sweep_build
 from .tree import FAR, MAX_DEPTH, Bvh, Forest
@@ -15,6 +15,7 @@ __all__ = [
     "Bvh",
     "Forest",
     "Form",
+    "QuickTree",
     "build",
     "build_forest",
     "quick_build",

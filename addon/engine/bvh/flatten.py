@@ -178,8 +178,9 @@ def lay_out(
     while len(place):
         left, sides = cut(node, first, number)
         # Halving c leaves takes ceil(log2 c) levels: the last chance to begin is when just so many are left.
-        halve = level + np.ceil(np.log2(number)) >= MAX_DEPTH
-        left, sides = np.where(halve, number // 2, left), np.where(halve[:, None], -1, sides)
+        if level + np.ceil(np.log2(number.max())) >= MAX_DEPTH:
+            halve = level + np.ceil(np.log2(number)) >= MAX_DEPTH
+            left, sides = np.where(halve, number // 2, left), np.where(halve[:, None], -1, sides)
         numbers = np.stack([left, number - left], axis=1)
         firsts = np.stack([first, first + left], axis=1)
         places = np.stack([place + 1, place + left], axis=1)

@@ -28,10 +28,11 @@ class Form:
 
         Spans have rows -lo.x, -lo.y, -lo.z, hi.x, hi.y, hi.z: a union is one maximum.
         """
-        return replace(self.bvh, boxes=self._slots.boxes(span.__getitem__))
+        return replace(self.bvh, boxes=self.slots.boxes(span.__getitem__))
 
     @cached_property
-    def _slots(self):
+    def slots(self) -> Slots:
+        """Found where they are asked for first."""
         return Slots(self.bvh)
 
 
@@ -49,17 +50,20 @@ class Slots:
 
     def __init__(self, bvh: Bvh, roots: np.ndarray | None = None):
         """`roots`: of a `Forest`."""
-        self.child = bvh.child.ravel()
+        self.child, count = bvh.child.ravel(), bvh.count.ravel()
         nodes, inner = [np.arange(min(len(bvh), 1)) if roots is None else roots], bvh.is_inner
         while len(nodes[-1]):
             nodes.append(bvh.child[nodes[-1]][inner[nodes[-1]]])
         self.levels = np.cumsum([len(level) for level in nodes[:-1]])
         nodes = np.concatenate(nodes)
-        self.place = (2 * nodes[:, None] + np.arange(2)).ravel()
-        self.inner = np.flatnonzero(inner[nodes])
+        self.place = np.empty(2 * len(nodes), np.int64)
+        np.multiply(nodes, 2, out=self.place[::2])
+        np.add(self.place[::2], 1, out=self.place[1::2])
+        self.inner = np.flatnonzero(inner.ravel()[self.place])
+        leaf = np.flatnonzero(count[self.place])
+        place = self.place[leaf]
         first = np.full(len(bvh.order), -1, np.int32)
-        leaf = np.flatnonzero(bvh.count[nodes])
-        first[bvh.leaf_start[nodes].ravel()[leaf]] = leaf
+        first[self.child[place] + bvh.run[bvh.label.ravel()[place]]] = leaf
         self.start = np.flatnonzero(first >= 0)
         self.leaf = first[self.start]
 

@@ -9,10 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..threads import each_piece
-from .boxes import morton_codes, sorting_order, spans
+from .boxes import morton_codes, sorted_codes, spans
 from .build import checked
 from .cost import leaf_size_by_label
 from .flatten import LEAF_SIZE, Cut, lay_out, runs
+from .form import Form
 from .refit import put_around
 from .tree import Bvh, empty_bvh
 
@@ -25,18 +26,36 @@ def quick_build(
     lo, hi, label = checked(lo, hi, label, leaf_size)
     if len(lo) == 0:
         return empty_bvh()
-    code = morton_codes(spans(lo, hi))
-    curve = sorting_order(code)
-    code = code[curve]
-    most = leaf_size_by_label(leaf_size, label)
-    cell = cell_starts(code, int(most[np.flatnonzero(np.bincount(label))].max()))
-    start, curve = _leaf_starts(cell, curve, label, most)
-    order, run, rank = runs(curve, label)
-    size = np.diff(start, append=len(curve))
-    leaves, cut = np.array([len(start)]), _cut_by_codes(code[start])
-    child, count, kind, _, depth = lay_out(rank[start], size, label[curve[start]], np.zeros(1, np.int64), leaves, cut)
-    bvh = Bvh(np.empty((0, 2, 2, 3), np.float32), child, count, kind, order, run, int(depth[0]))
-    return put_around(bvh, lo, hi)
+    return put_around(QuickTree(spans(lo, hi), label, leaf_size).without_boxes(), lo, hi)
+
+
+class QuickTree:
+    """What `quick_build` makes of (6, n) finite float32 spans of any scale, n > 0, and (n,) int32 labels, in two parts:
+    the second takes about as long as it takes to bring the primitives in order, and need not wait for that.
+
+    `order`, `run`: of the `Bvh`.
+    """
+
+    def __init__(self, span: np.ndarray, label: np.ndarray, leaf_size: int | np.ndarray):
+        curve, code = sorted_codes(morton_codes(span))
+        most = leaf_size_by_label(leaf_size, label)
+        cell = cell_starts(code, int(most[np.flatnonzero(np.bincount(label))].max()))
+        start, curve = _leaf_starts(cell, curve, label, most)
+        self.order, self.run, rank = runs(curve, label)
+        self._leaves = rank[start], np.diff(start, append=len(curve)), label[curve[start]]
+        self._codes = code[start]
+
+    def without_boxes(self) -> Bvh:
+        """The hierarchy without boxes."""
+        roots, leaves = np.zeros(1, np.int64), np.array([len(self._codes)])
+        child, count, kind, _, depth = lay_out(*self._leaves, roots, leaves, _cut_by_codes(self._codes))
+        return Bvh(np.empty((0, 2, 2, 3), np.float32), child, count, kind, self.order, self.run, int(depth[0]))
+
+    def form(self) -> Form:
+        """The form, ready to be put around the primitives."""
+        form = Form(self.without_boxes())
+        _ = form.slots
+        return form
 
 
 def cell_starts(code: np.ndarray, most: int) -> np.ndarray:
@@ -47,9 +66,12 @@ def cell_starts(code: np.ndarray, most: int) -> np.ndarray:
     def find_bits(rows):
         # Two neighbours are parted by the cut at the highest bit in which they differ, those with equal codes by their
         # places.
-        place = np.arange(rows.start + 1, rows.stop + 1, dtype=np.uint64)
         differ = code[1:][rows] ^ code[:-1][rows]
-        bit[rows] = np.where(differ == 0, _highest_bit(place ^ (place - np.uint64(1))), 32 + _highest_bit(differ))
+        found = 32 + _highest_bit(differ)
+        same = np.flatnonzero(differ == 0)
+        place = (same + rows.start + 1).astype(np.uint64)
+        found[same] = _highest_bit(place ^ (place - np.uint64(1)))
+        bit[rows] = found
 
     def find_sizes(rows):
         first = max(rows.start - most, 0)  # what lies farther does not matter
@@ -64,13 +86,13 @@ def cell_starts(code: np.ndarray, most: int) -> np.ndarray:
 def _cell_sizes(bit: np.ndarray, most: int) -> np.ndarray:
     """(n,) sizes, right up to `most`, of the cells that are cut at bits (n,): one reaches as far to either side as the
     cuts are at lower bits."""
-    size = np.full(len(bit), 2, np.int16)
+    size = np.full(len(bit), 2, np.int8 if most < 64 else np.int64)
     for side in (slice(None), slice(None, None, -1)):
+        its, below = size[side], bit[side]
         reaches = np.ones(len(bit), bool)
-        for distance in range(1, min(most, len(bit)) + 1):
-            reaches[side][:distance] = False
-            reaches[side][distance:] &= bit[side][:-distance] < bit[side][distance:]
-            size += reaches
+        for distance in range(1, min(most, len(bit) - 1) + 1):
+            reaches = reaches[1:] & (below[:-distance] < below[distance:])
+            its[distance:] += reaches.view(np.int8)  # much faster than adding bool
     return size
 
 

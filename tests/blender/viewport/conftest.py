@@ -4,6 +4,7 @@ import bpy
 import gpu
 import pytest
 
+from addon.engine.devices.blender_gpu import BlenderDevice
 from addon.viewport import history
 from tests.blender.viewport.stand_in import StandIn, mark
 
@@ -39,3 +40,20 @@ def second(view):
     second = StandIn()
     yield second
     second.close()
+
+
+@pytest.fixture
+def uploads(monkeypatch):
+    """A list with an entry for each texture of a scene that the device is given."""
+    seen = []
+    for name in ("texture", "update", "grown"):
+        monkeypatch.setattr(BlenderDevice, name, counted(getattr(BlenderDevice, name), seen))
+    return seen
+
+
+def counted(function, seen):
+    def call(*arguments, **options):
+        seen.append(function.__name__)
+        return function(*arguments, **options)
+
+    return call

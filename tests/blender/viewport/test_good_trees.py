@@ -10,7 +10,10 @@ from addon.engine import LoadedScene, SceneError, bvh
 from addon.engine.changes import Change
 from addon.engine.tree_packing import QUICK_FROM
 from addon.operators.nff_shapes import new_point_cloud
-from addon.viewport import history, waiting
+from addon.viewport import history, scene, waiting
+from addon.viewport.pace import MOST_BEFORE_FIRST
+from addon.viewport.picture import ViewportPicture
+from addon.viewport.renewal import Renewal
 from tests.blender.viewport.gate import Gate
 from tests.blender.viewport.stand_in import draws, loads, records
 
@@ -36,6 +39,35 @@ def test_good_trees_follow_quick_ones_and_the_picture_goes_on(view, crowd):
     assert first.change & Change.GEOMETRY and better.change == Change.TREES
     assert sum(draw.began for draw in draws()) == 1 and draws()[-1].sample == 2
     assert not view.session.scene.loaded.can_improve and not view.redraw()
+
+
+@pytest.mark.parametrize(("seconds_left", "begun_at"), [(1.0, 2), (100.0, 1)])
+def test_good_trees_wait_for_a_picture_that_is_nearly_finished(view, crowd, monkeypatch, seconds_left, begun_at):
+    """Both need the processor where there is no GPU; but not for one that takes longer than the trees."""
+    seconds = property(lambda picture: 0.0 if picture.finished else seconds_left)
+    monkeypatch.setattr(ViewportPicture, "seconds_left", seconds)
+    samples = []
+
+    def begun(loaded, prepare, *statistics):
+        if prepare == loaded.prepare_better:
+            samples.append(view.session.picture.sample)
+        return Renewal(loaded, prepare, *statistics)
+
+    monkeypatch.setattr(scene, "Renewal", begun)
+    view.settle()
+    assert samples == [begun_at]
+
+
+def test_nothing_is_shown_before_the_first_picture_and_its_textures_come_whole(view, crowd, uploads, monkeypatch):
+    """A redraw waits for the scene at first, there is nothing to turn meanwhile; later it goes on after a moment."""
+    waits, wait = [], Renewal.wait
+    monkeypatch.setattr(Renewal, "wait", lambda renewal, seconds: (waits.append(seconds), wait(renewal, seconds))[1])
+    view.settle()
+    assert max(waits) == MOST_BEFORE_FIRST and "update" not in uploads[: uploads.index("texture") + 3]
+    waits.clear()
+    bpy.context.object.location.x = 1.0
+    view.settle()
+    assert 0.0 < max(waits) < MOST_BEFORE_FIRST and "update" in uploads
 
 
 def test_an_edit_goes_before_good_trees(view, crowd, monkeypatch):

@@ -7,27 +7,9 @@ import bpy
 import numpy as np
 import pytest
 
-from addon.engine.devices.blender_gpu import BlenderDevice
 from addon.sync.scene_reader import SceneReader
 from addon.viewport import scenes, session
 from tests.blender.viewport.stand_in import HEIGHT, WIDTH, draws, loads, sphere_at
-
-
-@pytest.fixture
-def uploads(monkeypatch):
-    """A list with an entry for each texture of a scene that the device is given."""
-    seen = []
-    for name in ("texture", "update", "grown"):
-        monkeypatch.setattr(BlenderDevice, name, counted(getattr(BlenderDevice, name), seen))
-    return seen
-
-
-def counted(function, seen):
-    def call(*arguments, **options):
-        seen.append(function.__name__)
-        return function(*arguments, **options)
-
-    return call
 
 
 def test_it_shows_the_scene_and_comes_to_rest(view):
