@@ -8,7 +8,7 @@ from collections import deque
 
 #: Seconds to wait for what is being prepared, where there is no picture yet: redraws meanwhile would show nothing, and
 #: on a software rasteriser take the processor from the thread that prepares.
-MOST_BEFORE_FIRST = 1.0
+MOST_BEFORE_FIRST = 0.5
 #: Seconds from redraw to redraw at most, where there is something new to show.
 MOST = 0.25
 #: The same, where nobody sees what is new: parts of one more sample.
