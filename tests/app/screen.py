@@ -9,7 +9,6 @@ from contextlib import contextmanager
 
 import bpy
 import numpy as np
-import pytest
 
 WAIT = 420.0  # seconds at most, on a software rasteriser
 
@@ -65,7 +64,7 @@ def wait_for(path, process, log):
     end = time.monotonic() + WAIT
     while not path.exists():
         if process.poll() is not None or time.monotonic() > end:
-            pytest.fail(f"the window showed no picture; Blender said:\n{log.read_text()}")
+            raise AssertionError(f"the window showed no picture; Blender said:\n{log.read_text()}")
         time.sleep(0.2)
     state = json.loads(path.read_text())
     assert "error" not in state, state["error"]
