@@ -22,8 +22,9 @@ test-all: $(BLENDERS:%=test-bpy-%)  ## run the tests in Blender as a module, in 
 test-app: .venv/.ready  ## run the tests in the real Blender application, OpenGL and Vulkan
 	tools/run_app_tests
 
-torture: .venv/.ready  ## edit at random in the real application's rendered viewport for five minutes
-	CONIC_TORTURE_SECONDS=300 tools/run_app_tests opengl -- tests/app/test_torture.py -q
+torture: .venv/.ready  ## edit in each mode, and at random for five minutes, in the application's rendered viewport
+	CONIC_ALL_MODES=1 CONIC_TORTURE_SECONDS=300 tools/run_app_tests opengl -- \
+		tests/app/test_torture.py tests/app/test_viewport_modes.py -q
 
 lint: .venv/.ready  ## check the Python code's style
 	$(PYTHON) -m ruff check .

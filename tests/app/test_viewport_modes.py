@@ -1,6 +1,9 @@
 """The rendered viewport in Blender's window shows what is edited, in whichever mode, and of whatever kind: what is seen
-in the mode is what is seen when it is left. Its pictures stay in build/app-viewport."""
+in the mode is what is seen when it is left. Its pictures stay in build/app-viewport.
 
+All cases take ten minutes: a few run with the other tests, all with CONIC_ALL_MODES=1, as `make torture` does."""
+
+import os
 import shutil
 import textwrap
 
@@ -12,6 +15,9 @@ from tests.app.viewport_scene import middle, region
 
 DIFFERENT = 12 / 255  # a pixel that differs by more is another one
 SAME, OTHER = 0.001, 0.002  # part of the pixels: edges that tie; what an edit changes
+
+USUAL = ("mesh", "exact sphere", "objects that share a mesh", "what hair grows on", "sculpted")
+CHOSEN = tuple(CASES) if os.environ.get("CONIC_ALL_MODES") else USUAL
 
 pytestmark = pytest.mark.skipif(
     not (shutil.which("Xvfb") and shutil.which("xdotool")), reason="Xvfb or xdotool is not installed"
@@ -46,7 +52,7 @@ def stroke(window):
     window.drag(1, (x - 60, y - 10), *[(x - 60 + 8 * k, y - 10 + 2 * k) for k in range(16)])
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", CHOSEN)
 def test_what_is_edited_is_seen(empty_middle, name):
     window, case = empty_middle, CASES[name]
     window.run(textwrap.dedent(case.build))
