@@ -180,7 +180,7 @@ class TreePacker:
         cost or 0)."""
         geometry = self.plan.geometries[number]
         if tree is None:
-            tree = self._built_anew(geometry.name, parts, move)
+            tree = self._built_anew(number, parts, move)
             if self._improves(number):
                 geometry.tree = geometry.token, self.moved(number), tree
         with timed(self.seconds, "tree"):
@@ -190,11 +190,11 @@ class TreePacker:
                 self._write_records(number, label, part, order, move)
         return tree, KeptTree(bvh.Form(tree), cost) if self.keep else None, cost
 
-    def _built_anew(self, name, parts, move):
+    def _built_anew(self, number, parts, move):
+        counts = self.plan.counts_in_trees[number]
         with timed(self.seconds, "bounds"):
             lower, upper = _bounds(parts.values(), move)
-        with timed(self.seconds, "tree"), _naming(name):
-            counts = _counts(parts)
+        with timed(self.seconds, "tree"), _naming(self.plan.geometries[number].name):
             options = {"leaf_size": leaves.sizes(counts), "intersection_cost": leaves.costs(counts)}
             return bvh.build(lower, upper, _labels(parts), **options)
 
@@ -205,7 +205,7 @@ class TreePacker:
             if not np.isfinite(spans).all():
                 return None, None, 0.0  # building says what is wrong
         with timed(self.seconds, "tree"):
-            quick = bvh.QuickTree(spans, _labels(parts), leaves.sizes(_counts(parts)))
+            quick = bvh.QuickTree(spans, _labels(parts), leaves.sizes(self.plan.counts_in_trees[number]))
             del spans
             spans, form = both(lambda: self._write_in_order(number, parts, move, quick), quick.form)
             tree = form.around(spans)
@@ -351,13 +351,6 @@ def _copy_records(records, *targets):
 def _labels(parts):
     """(n,) int32 kind numbers of the primitives of all `parts`, by kind number."""
     return np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])
-
-
-def _counts(parts):
-    """(K,) int64 numbers of primitives by kind number."""
-    counts = np.zeros(len(BY_KIND), np.int64)
-    counts[list(parts)] = [len(part) for part in parts.values()]
-    return counts
 
 
 def _spans(parts, move):
