@@ -218,24 +218,15 @@ class TreePacker:
         there = there is not None and there.quick and there.is_of(self.plan.geometries[number], self.moved(number))
         return there and not self.quick
 
-    def _write_records(self, number, label, part, order, move):
-        """Write the records of the rows `order` of a part of a geometry, or of what is joined to it."""
+    def _write_records(self, number, label, part, order, move, spans=None):
+        """Write the records of the rows `order` of a part of a geometry, or of what is joined to it; and the `spans`
+        (6, n) of their boxes, as `bvh.Form` takes them, where these are asked for."""
         hits, surfaces = self._records(number, label, part)
 
         def write(rows):
-            piece = part.take(order[rows])
-            _copy_records((piece.transformed(move) if move else piece).records(), hits[rows], surfaces[rows])
-
-        each_piece(write, len(order))
-
-    def _write_moved(self, number, label, part, order, move, spans):
-        """As `_write_records`; also the `spans` (6, n) of the primitives' boxes, as `bvh.Form` takes them."""
-        hits, surfaces = self._records(number, label, part)
-
-        def write(rows):
-            piece = part.take(order[rows])
-            piece = piece.transformed(move) if move else piece
-            _fill_spans(piece, spans[:, rows])
+            piece = _moved(part.take(order[rows]), move)
+            if spans is not None:
+                _fill_spans(piece, spans[:, rows])
             _copy_records(piece.records(), hits[rows], surfaces[rows])
 
         each_piece(write, len(order))
@@ -260,7 +251,7 @@ class TreePacker:
         spans, end = np.empty((6, len(tree.order)), np.float32), 0
         for label, part, order in rows_by_kind(tree, parts):
             start, end = end, end + len(order)
-            self._write_moved(number, label, part, order, move, spans[:, start:end])
+            self._write_records(number, label, part, order, move, spans[:, start:end])
         return spans
 
     def _records(self, number, label, part):
@@ -353,18 +344,38 @@ def _labels(parts):
     return np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])
 
 
-def _spans(parts, move):
-    """(6, n) float32 spans of the boxes of all rows of several kinds, as `bvh.Form` takes them."""
-    spans, start = np.empty((6, sum(map(len, parts))), np.float32), 0
+def _moved(primitives, move):
+    return primitives.transformed(move) if move else primitives
+
+
+def _each_moved(parts, move, write):
+    """Call `write(piece, rows)` for all primitives of several kinds, moved, a piece at a time; `rows`: a slice, which
+    of all they are."""
+    start = 0
     for part in parts:
-        of_part = spans[:, start : start + len(part)]
 
-        def write(rows, part=part, of_part=of_part):
-            piece = part.take(rows)
-            _fill_spans(piece.transformed(move) if move else piece, of_part[:, rows])
+        def write_piece(rows, part=part, start=start):
+            write(_moved(part.take(rows), move), slice(start + rows.start, start + rows.stop))
 
-        each_piece(write, len(part))
+        each_piece(write_piece, len(part))
         start += len(part)
+
+
+def _bounds(parts, move):
+    """Boxes of all rows of several kinds: lower and upper (n, 3) float32, rounded outwards."""
+    lower, upper = np.empty((2, sum(map(len, parts)), 3), np.float32)
+
+    def write(piece, rows):
+        lower[rows], upper[rows] = bvh.rounded_outward(*piece.bounds())
+
+    _each_moved(parts, move, write)
+    return lower, upper
+
+
+def _spans(parts, move):
+    """(6, n) float32 spans of these boxes, as `bvh.Form` takes them."""
+    spans = np.empty((6, sum(map(len, parts))), np.float32)
+    _each_moved(parts, move, lambda piece, rows: _fill_spans(piece, spans[:, rows]))
     return spans
 
 
@@ -373,20 +384,3 @@ def _fill_spans(piece, spans):
     lower, upper = bvh.rounded_outward(*piece.bounds())
     np.negative(lower.T, out=spans[:3])
     spans[3:] = upper.T
-
-
-def _bounds(parts, move):
-    """Boxes of all rows of several kinds: lower and upper (n, 3) float32, rounded outwards."""
-    count = sum(map(len, parts))
-    lower, upper = np.empty((count, 3), np.float32), np.empty((count, 3), np.float32)
-    start = 0
-    for part in parts:
-        low, high = lower[start : start + len(part)], upper[start : start + len(part)]
-
-        def write(rows, part=part, low=low, high=high):
-            piece = part.take(rows)
-            low[rows], high[rows] = bvh.rounded_outward(*(piece.transformed(move) if move else piece).bounds())
-
-        each_piece(write, len(part))
-        start += len(part)
-    return lower, upper
