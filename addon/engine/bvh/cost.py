@@ -11,16 +11,10 @@ TRAVERSAL_COST = 1.0  # of visiting a node, which tests the boxes of both its ch
 INTERSECTION_COST = 0.5  # of testing a primitive: fewer texels than a node, and a leaf reads them in a row
 
 
-def cost_by_label(intersection_cost: float | np.ndarray, label: np.ndarray) -> np.ndarray:
-    """(labels,) float32: the cost of testing a primitive of each label, from one for all or from one for each."""
-    cost = np.asarray(intersection_cost, np.float32)
-    return cost if cost.ndim else np.full(int(label.max()) + 1, cost)
-
-
-def leaf_size_by_label(leaf_size: int | np.ndarray, label: np.ndarray) -> np.ndarray:
-    """(labels,) int32: most primitives in a leaf of each label, likewise."""
-    size = np.asarray(leaf_size, np.int32)
-    return size if size.ndim else np.full(int(label.max()) + 1, size)
+def by_label(value: float | np.ndarray, label: np.ndarray, dtype: type = np.float32) -> np.ndarray:
+    """(labels,) a value for each label, from one for all or from one for each."""
+    value = np.asarray(value, dtype)
+    return value if value.ndim else np.full(int(label.max()) + 1, value)
 
 
 def sah_cost(
@@ -36,7 +30,7 @@ def sah_cost(
         return 0.0
     lo, hi = bvh.bounds.astype(np.float64)
     root = _half_area(hi - lo)
-    test = cost_by_label(intersection_cost, np.maximum(bvh.label, 0))
+    test = by_label(intersection_cost, np.maximum(bvh.label, 0))
     costs = each_piece(lambda nodes: float(_costs(bvh, nodes, root, traversal_cost, test).sum()), len(bvh))
     return traversal_cost + sum(costs)
 
@@ -47,7 +41,7 @@ def sah_costs(
     """(t,) float64: `sah_cost` of each tree."""
     bvh, (lo, hi) = forest.bvh, np.moveaxis(forest.bounds.astype(np.float64), 1, 0)
     root = np.repeat(_half_area(hi - lo), np.diff(forest.root))
-    test = cost_by_label(intersection_cost, np.maximum(bvh.label, 0))
+    test = by_label(intersection_cost, np.maximum(bvh.label, 0))
     costs = _costs(bvh, slice(None), root[:, None], traversal_cost, test)
     return traversal_cost + np.add.reduceat(costs.sum(axis=1), forest.root[:-1])
 

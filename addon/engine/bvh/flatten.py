@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .cost import cost_by_label, leaf_size_by_label
+from .cost import by_label
 from .refit import put_around
 from .topology import Topology
 from .tree import MAX_DEPTH, MIXED, Bvh, Forest
@@ -79,7 +79,7 @@ def _choose_leaves(
     kind = np.empty(nodes, np.int32)
     kind[:n] = label
     cost = np.empty(nodes, np.float32)
-    single, most = cost_by_label(intersection_cost, label), leaf_size_by_label(leaf_size, label)
+    single, most = by_label(intersection_cost, label), by_label(leaf_size, label, np.int32)
     cost[:n] = topology.area[:n] * single[label]
     for batch in topology.batches:
         left, right = topology.left[batch], topology.right[batch]

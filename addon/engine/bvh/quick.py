@@ -11,7 +11,7 @@ import numpy as np
 from ..threads import each_piece
 from .boxes import morton_codes, sorted_codes, spans
 from .build import checked
-from .cost import leaf_size_by_label
+from .cost import by_label
 from .flatten import LEAF_SIZE, Cut, lay_out, runs
 from .form import Form
 from .refit import put_around
@@ -38,7 +38,7 @@ class QuickTree:
 
     def __init__(self, span: np.ndarray, label: np.ndarray, leaf_size: int | np.ndarray):
         curve, code = sorted_codes(morton_codes(span))
-        most = leaf_size_by_label(leaf_size, label)
+        most = by_label(leaf_size, label, np.int32)
         cell = cell_starts(code, int(most[np.flatnonzero(np.bincount(label))].max()))
         start, curve = _leaf_starts(cell, curve, label, most)
         self.order, self.run, rank = runs(curve, label)
