@@ -27,11 +27,6 @@ from .world_light import WorldLight, light_of_world, world_digest
 _SHADOW_SURFACES = 32
 #: The feature of the shader that each way of shadows needs.
 _SHADOW_FEATURES = {"TRANSPARENT": "TRANSPARENT_SHADOWS", "TINTED": "TINTED_SHADOWS"}
-
-#: Features of things of which a scene may have none.
-_SPARE_FEATURES = frozenset(
-    name for name in shader_source.FEATURES if name.startswith(tuple(f"HAS_{kind.upper()}" for kind in layout.KINDS))
-) | {"HAS_INSTANCES", "HAS_QUADRIC_LEAVES"}
 #: With these the shader must know whether there are instances: shapes in the world's space have no visibility.
 _ASK_FOR_INSTANCES = {"HAS_VISIBILITY", "HAS_SHADOW_CATCHER", "HAS_LIGHT_LINKING"}
 
@@ -225,7 +220,7 @@ class LoadedScene:
         for compiling takes seconds; else the one that has no more than it needs."""
         features, entry = _features(packed, settings, world_light), entries.known(self.device, settings.entry)
         if self.lasting and before:
-            spare = (before.features - features) & _SPARE_FEATURES
+            spare = (before.features - features) & shader_source.SPARE
             if spare and not features & _ASK_FOR_INSTANCES:
                 source = _source(packed, settings, features | spare, entry)
                 if source == before.source:

@@ -20,14 +20,19 @@ from pathlib import Path
 from . import layout, record_glsl
 from .glsl_functions import SHADER_FOLDER
 
-#: Names that shader files may test.
-FEATURES = frozenset(
+_PLACES = {
+    f"HAS_{kind.upper()}_{place}": {f"HAS_{kind.upper()}"}
+    for kind in layout.TREE_KINDS
+    for place in ("LEAVES", "OUTSIDE")
+}
+#: Features of shapes of which a scene may have none: a program with them can draw it all the same.
+SPARE = frozenset(
     [f"HAS_{kind.upper()}" for kind in layout.KINDS if kind != "instance"]
-    + [f"HAS_{kind.upper()}_{where}" for kind in layout.TREE_KINDS for where in ("LEAVES", "OUTSIDE")]
-    + [
-        "HAS_QUADRIC_LEAVES",
-        "HAS_SPHERE_RUNS",
-        "HAS_INSTANCES",
+    + [*_PLACES, "HAS_QUADRIC_LEAVES", "HAS_SPHERE_RUNS", "HAS_INSTANCES"]
+)
+#: Names that shader files may test.
+FEATURES = SPARE.union(
+    [
         "HAS_PROGRAMS",
         "VORONOI_LOOKUP3",
         "HAS_GRADIENTS",
@@ -71,11 +76,7 @@ FEATURES = frozenset(
 )
 
 #: Features that others need.
-NEEDS = {
-    f"HAS_{kind.upper()}_{where}": {f"HAS_{kind.upper()}"}
-    for kind in layout.TREE_KINDS
-    for where in ("LEAVES", "OUTSIDE")
-} | {
+NEEDS = _PLACES | {
     "HAS_AMBIENT_OCCLUSION": {"HAS_HEMISPHERE_LIGHT"},
     "HAS_DEPTH_CUE": {"HAS_GUIDE"},
     "HAS_EMITTERS": {"HAS_LIGHT_SHAPES"},
