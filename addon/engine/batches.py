@@ -2,20 +2,21 @@
 
 import numpy as np
 
+from .plan import LARGE
 from .primitives import BY_KIND
 
 #: Primitives of a batch: the temporary arrays of a tree's builder stay in the processor's cache.
 MOST = 1 << 15
 
 
-def batches(plan, numbers, large):
+def batches(plan, numbers):
     """Of `numbers` of geometries: lists of those that are built together, each of at most `MOST` primitives in all,
-    whose own space either is the world's or is not; and those of `large` many primitives or more."""
+    whose own space either is the world's or is not; and the large ones, see `plan.LARGE`."""
     sizes = plan.counts[numbers].sum(axis=1)
-    found, small = [], sizes < large
+    found, small = [], sizes < LARGE
     for in_world in (True, False):
         of_these = small & (plan.in_world[numbers] == in_world)
-        batch = np.cumsum(sizes[of_these]) // (MOST - large)
+        batch = np.cumsum(sizes[of_these]) // (MOST - LARGE)
         found += np.split(numbers[of_these], np.flatnonzero(np.diff(batch)) + 1)
     return [batch for batch in found if len(batch)], numbers[~small]
 

@@ -23,8 +23,11 @@ _EMPTY = Geometry(name="none")
 #: Blocks of instances that are checked together, where they are small.
 _BLOCKS = 256
 
-#: Kinds of which the world's shapes have at most `_FEW` stand outside of its tree, where there are `_MANY` shapes.
-_FEW, _MANY = 4, 4096
+#: Geometries of so many primitives are packed one at a time and their trees kept for refits, and only these have shapes
+#: outside of their trees: smaller ones are built in no time, many at once.
+LARGE = 4096
+#: Kinds of which the world's shapes have at most so many stand outside of its tree, where it is large.
+_FEW = 4
 
 #: Where planes stand in the directory of attributes, (geometry number, kind number): in world space.
 PLANE_ATTRIBUTES = (0, layout.KINDS.index("plane"))
@@ -69,7 +72,7 @@ class Plan:
         a million spheres would have a leaf's test of triangles beside that of spheres, and vector processors do both
         whenever they do one."""
         counts = self.counts[0]
-        return (counts > 0) & (counts <= _FEW) & (counts.sum() >= _MANY)
+        return (counts > 0) & (counts <= _FEW) & (counts.sum() >= LARGE)
 
     @cached_property
     def counts_in_trees(self):

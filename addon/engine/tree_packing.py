@@ -19,8 +19,6 @@ from .residency import BuiltTree, KeptTree, Resident, Upload
 from .threads import both, each_piece
 from .timing import timed
 
-#: Trees of so many primitives are kept for refits: smaller ones are built in no time, many at once.
-_WORTH_KEEPING = 4096
 #: Trees of fewer primitives are never built quickly: good ones take no time.
 QUICK_FROM = 1 << 14
 #: A refitted tree that costs so much more than a built one is built.
@@ -42,7 +40,7 @@ class TreePacker:
         self._added = {}
         self._move = Similarity(np.eye(3), 1.0, -origin) if origin.any() else None
         self._moved = origin.tobytes() if origin.any() else b""
-        self._batches, self._large = batches(plan, numbers, _WORTH_KEEPING)
+        self._batches, self._large = batches(plan, numbers)
         self.bases = np.zeros(plan.counts.shape, np.int64)
         numbers = np.concatenate([*self._batches, self._large])  # those of a batch lie one after the other
         for number in np.setdiff1d(plan.built, numbers).tolist():
