@@ -41,6 +41,8 @@ def measure(name, size, runs, absent):
     scene, reasons = matte(scenes.make(name)), dict(absent)
     with contextlib.ExitStack() as stack:
         peers = {"Conic": ConicCasting(scene, size), PICTURE: Conic(scene, size, 1, shadows="OPAQUE")}
+        for own in peers.values():
+            stack.callback(own.close)
         for peer in TRAVERSAL:
             if peer.name in absent:
                 continue
@@ -54,8 +56,6 @@ def measure(name, size, runs, absent):
         warm, failures = in_turn({program: peer.trace for program, peer in peers.items()}, 1)
         seconds, later = in_turn({program: peers[program].trace for program in warm}, runs)
         rays = {program: peers[program].rays() for program in seconds}
-        for own in ("Conic", PICTURE):
-            peers[own].close()
     conic = seconds["Conic"].median
     print(name, {p: round(s.median, 4) for p, s in seconds.items()}, failures | later, flush=True)
     return {

@@ -6,19 +6,15 @@ from pathlib import Path
 import numpy as np
 
 from addon.engine import shader_source
-from addon.engine.layout import KINDS
 from addon.engine.loaded_scene import frame_record
 
 from .conic import Conic
 
 _FOLDERS = (Path(__file__).resolve().parents[1] / "shaders", shader_source.SHADER_FOLDER)
-_SHAPES = frozenset(f"HAS_{kind.upper()}" for kind in KINDS) | {"HAS_INSTANCES"}
 
 
 class ConicCasting(Conic):
     """Eye rays and shadow rays to point lights: hits, normals and shadow tests alone."""
-
-    name = "Conic"
 
     def __init__(self, scene, size, depth=1, folder=None, **settings):
         super().__init__(scene, size, depth, folder, **settings)
@@ -49,7 +45,7 @@ class ConicCasting(Conic):
         lights = [light.position - self._drawn.packed.origin for light in self.scene.lights]
         return shader_source.program(
             "cast_frag.glsl",
-            self._drawn.features & _SHAPES,
+            self._drawn.features & shader_source.SPARE,
             self._drawn.packed.constants | {"CAST_LIGHTS": len(lights)},
             folders=_FOLDERS,
             generated=(("cast_lights_lib.glsl", _lights_glsl(lights)),),

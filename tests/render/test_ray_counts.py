@@ -7,6 +7,9 @@ import pytest
 
 from addon.engine import Session, Settings
 from addon.engine.nff import read_nff
+from benchmarks import scenes
+from benchmarks.peers import Conic, ConicCasting
+from benchmarks.traversal import matte
 from examples.standard_scenes import FAMILIES
 
 # Eye rays that hit, mirror rays, refracted rays, shadow rays. Any classical ray tracer is to come within 10%.
@@ -84,3 +87,17 @@ def test_lattice_counts(device):
     assert rays["refract"] == 0
     assert 0 < rays["reflect"] <= 4 * rays["eye_hit"]
     assert rays["shadow"] <= 6 * (rays["eye_hit"] + rays["reflect"])
+
+
+@pytest.mark.parametrize("name", ["balls:2", "gears:1"])
+def test_the_benchmark_of_traversal_traces_the_rays_of_the_picture(device, monkeypatch, name):
+    """It has a program of its own, which must look for shapes wherever they are."""
+    monkeypatch.setattr(Conic, "_device", device)
+    scene = matte(scenes.make(name))
+    casting, shading = ConicCasting(scene, 64), Conic(scene, 64, 1, shadows="OPAQUE")
+    casting.trace()
+    rays, expected = casting.rays(), shading.rays()
+    casting.close()
+    shading.close()
+    assert rays["eye_hit"] == expected["eye_hit"] > 4000
+    assert rays["shadow"] == expected["shadow"] > rays["lit"] > 0
