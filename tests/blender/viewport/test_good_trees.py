@@ -28,9 +28,27 @@ def crowd(view):
     return count
 
 
-def is_large(lower, *_arguments, **_options):
-    """Whether `bvh.build` is called for the crowd."""
-    return len(lower) >= QUICK_FROM
+@pytest.fixture
+def gate(view, crowd, monkeypatch):
+    """The `Gate` that holds back the good trees of the crowd; the picture with quick ones is finished."""
+    gate = Gate(monkeypatch, bvh, "build", holds=lambda lower, *_arguments, **_options: len(lower) >= QUICK_FROM)
+    redraw_until(view, picture_is_finished)
+    assert gate.reached.wait(60.0)
+    return gate
+
+
+def redraw_until(view, reached):
+    """Redraw until something is `reached()` and nothing more is asked for."""
+    while view.redraw() or not reached():
+        pass
+
+
+def picture_is_finished():
+    return draws() and draws()[-1].finished
+
+
+def edit_is_loaded():
+    return len(loads()) >= 2
 
 
 def test_good_trees_follow_quick_ones_and_the_picture_goes_on(view, crowd):
@@ -72,27 +90,20 @@ def test_nothing_is_shown_before_the_first_picture_and_its_textures_come_whole(v
 
 def test_an_edit_goes_before_good_trees(view, crowd, monkeypatch):
     gate = Gate(monkeypatch, LoadedScene, "prepare_better")
-    while view.redraw() or not draws()[-1].finished:
-        pass
+    redraw_until(view, picture_is_finished)
     assert view.session.waiting and "Loading" not in view.engine.text
     bpy.context.object.location.x = 1.0
-    while len(loads()) < 2 or view.redraw():
-        view.redraw()
+    redraw_until(view, edit_is_loaded)
     assert loads()[-1].change & Change.FILM and "Loading" not in view.engine.text
     gate.opened.set()
     view.settle()
     assert loads()[-1].change == Change.TREES and not view.session.scene.loaded.can_improve
 
 
-def test_good_trees_are_not_given_up_for_an_edit_that_changes_nothing(view, crowd, monkeypatch):
-    gate = Gate(monkeypatch, bvh, "build", holds=is_large)
-    while view.redraw() or not draws()[-1].finished:
-        pass
-    assert gate.reached.wait(60.0)
+def test_good_trees_are_not_given_up_for_an_edit_that_changes_nothing(view, gate):
     bpy.context.scene.conic.preview_samples = 5  # no other picture
     bpy.context.object.update_tag()
-    while len(records(history.Load)) < 2 or view.redraw():
-        view.redraw()
+    redraw_until(view, lambda: len(records(history.Load)) >= 2)
     assert draws()[-1].sample == 5 and draws()[-1].finished
     gate.opened.set()
     view.settle()
@@ -101,14 +112,9 @@ def test_good_trees_are_not_given_up_for_an_edit_that_changes_nothing(view, crow
     assert view.session.scene.loaded.drawn.settings.samples == 5
 
 
-def test_the_work_on_good_trees_outlives_an_edit(view, crowd, monkeypatch):
-    gate = Gate(monkeypatch, bvh, "build", holds=is_large)
-    while view.redraw() or not draws()[-1].finished:
-        pass
-    assert gate.reached.wait(60.0)
+def test_the_work_on_good_trees_outlives_an_edit(view, gate):
     bpy.context.object.location.x = 1.0
-    while len(loads()) < 2 or view.redraw():
-        view.redraw()
+    redraw_until(view, edit_is_loaded)
     assert loads()[-1].change & Change.FILM
     gate.opened.set()
     view.settle()
@@ -120,17 +126,12 @@ def test_the_work_on_good_trees_outlives_an_edit(view, crowd, monkeypatch):
     assert not any(geometry.tree for geometry in (scene.shapes, *(placed.geometry for placed in scene.instances)))
 
 
-def test_who_edits_meanwhile_hears_of_good_trees(view, crowd, monkeypatch):
+def test_who_edits_meanwhile_hears_of_good_trees(view, gate):
     """The edit is what they wait for no longer: the trees are."""
-    gate = Gate(monkeypatch, bvh, "build", holds=is_large)
-    while view.redraw() or not draws()[-1].finished:
-        pass
-    assert gate.reached.wait(60.0)
     bpy.context.object.location.x = 1.0
     bpy.context.view_layer.update()
     waiting._look()  # tells of the edit
-    while len(loads()) < 2 or view.redraw():
-        view.redraw()
+    redraw_until(view, edit_is_loaded)
     gate.opened.set()
     while not view.session.scene.prepared:
         time.sleep(0.001)
