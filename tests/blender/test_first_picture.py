@@ -1,6 +1,7 @@
 """The first picture (`make render`), small: what it is made of, and what is seen where."""
 
 import sys
+from functools import cache
 
 import bpy
 import numpy as np
@@ -22,6 +23,17 @@ COUNTS = {
     "cone": 1,
     "plane": 1,
 }
+
+
+@cache
+def small_globe():
+    """The example's globe takes seconds to paint."""
+    return globe(128)
+
+
+@pytest.fixture(autouse=True)
+def _small_globe(monkeypatch):
+    monkeypatch.setattr(first_picture, "globe", small_globe)
 
 
 def run(monkeypatch, *arguments):
@@ -146,7 +158,7 @@ def check_globe(picture):
     normals = normals / np.linalg.norm(normals, axis=1)[:, None]
     normals = normals[normals @ to_eye > 0.5]
     local = normals @ np.array(bpy.data.objects["Globe"].matrix_world.to_3x3().normalized())
-    painted = globe()
+    painted = small_globe()
     row = (np.arcsin(local[:, 2]) / np.pi + 0.5) * len(painted)
     column = (np.arctan2(local[:, 1], local[:, 0]) / (2 * np.pi) + 0.5) * 2 * len(painted)
     painted = painted[row.astype(int), column.astype(int) % painted.shape[1]]
