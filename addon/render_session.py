@@ -15,7 +15,8 @@ from .engine.timing import timed
 from .failures import is_defect, sentence_of
 from .statistics import Statistics, log_line, primitives_text, publish
 from .sync.camera import camera_of_render
-from .sync.scene_sync import SyncStatistics, sync_scene, sync_settings
+from .sync.scene_sync import SyncStatistics, sync_scene
+from .sync.settings import sync_settings
 
 STEP_SECONDS = 0.05 if bpy.app.background else 0.04  # between two looks at whether the user wants out
 RESULT_SECONDS = 0.5  # between two showings of what is there so far

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From Blender's depsgraph to `engine.Scene`, one direction, no way back.
 
-- `scene_sync`: the entry, `sync_scene` and `sync_settings`.
+- `scene_sync`: the entry, `sync_scene`; `settings`: what the picture is rendered with.
 - `instancing`: all that stands in the scene, as blocks of copies: `geometry_sets` reads instances of geometry nodes
   whole, `dupli_iterator` all others; `visibility`: which rays see them.
 - `object_sync`: what the copies are drawn as (`contents`: `meshes`, `points`, `curves`, `particle_hair`) and where

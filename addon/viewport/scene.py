@@ -10,7 +10,8 @@ from ..engine.changes import Change
 from ..engine.timing import timed
 from ..statistics import Statistics
 from ..sync.scene_reader import SceneReader
-from ..sync.scene_sync import SyncStatistics, sync_settings
+from ..sync.scene_sync import SyncStatistics
+from ..sync.settings import sync_settings
 from . import history, kept_scenes, waiting
 from .log_reporter import LogReporter
 from .renewal import Renewal

@@ -11,7 +11,7 @@ from addon.engine import render
 from addon.engine.devices.headless import HeadlessDevice
 from addon.operators.material_presets import PRESETS
 from addon.sync.attributes import key_of
-from addon.sync.scene_sync import sync_settings
+from addon.sync.settings import sync_settings
 from tests.blender.building import add_camera, link, material, node, sync
 from tests.blender.pictures import picture
 from tests.blender.test_sync_points import cloud

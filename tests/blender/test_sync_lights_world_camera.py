@@ -10,7 +10,7 @@ from mathutils import Euler, Matrix, Vector
 from addon.engine.errors import SceneError
 from addon.engine.scene import LightKind
 from addon.sync.camera import camera_of_view
-from addon.sync.scene_sync import sync_settings
+from addon.sync.settings import sync_settings
 from tests.blender.building import add_camera, image, link, node, sync, value_of
 
 SINCE_4_5 = pytest.mark.skipif(bpy.app.version < (4, 5, 0), reason="Blender 4.5 brought this property")

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from addon.engine.scene import Visibility
-from addon.sync.scene_sync import sync_settings
+from addon.sync.settings import sync_settings
 from tests.blender.building import add_camera, image, node, sync
 
 
