@@ -104,10 +104,10 @@ class ObjectCopies:
 
 
 class SceneCopies:
-    """The objects of a depsgraph: `objects`, their `uids` and where they are, `matrices` (n, 4, 4) float32."""
+    """The objects of a `depsgraph`: `objects`, their `uids` and where they are, `matrices` (n, 4, 4) float32."""
 
     def __init__(self, depsgraph, shown):
-        self._depsgraph, self.shown = depsgraph, shown
+        self.depsgraph, self.shown = depsgraph, shown
         self._walk = GeometryWalk(Copies, depsgraph.mode == "RENDER")
         self.objects = list(depsgraph.objects)
         self.uids = [obj.original.session_uid for obj in self.objects]
@@ -134,7 +134,7 @@ class SceneCopies:
 
     def has_others(self):
         """Whether there may be instancers that are not in the list: those that do not show themselves."""
-        name = "show_instancer_for_render" if self._depsgraph.mode == "RENDER" else "show_instancer_for_viewport"
+        name = "show_instancer_for_render" if self.depsgraph.mode == "RENDER" else "show_instancer_for_viewport"
         shows = np.ones(len(bpy.data.objects), bool)
         bpy.data.objects.foreach_get(name, shows)
         return not shows.all()
@@ -151,7 +151,7 @@ class SceneCopies:
             return uid in by_iterator or (uid not in listed and self._by_iterator(obj, late))
 
         own_too = not has_geometry_sets()
-        found = dupli_iterator.copies_by_iterator(self._depsgraph, Copies, self.shown, takes, own_too)
+        found = dupli_iterator.copies_by_iterator(self.depsgraph, Copies, self.shown, takes, own_too)
         return found + late
 
     def _by_iterator(self, obj, late):

@@ -20,8 +20,8 @@ from .visibility import seen_by
 class Lights:
     """Collects the lights of a scene, instanced ones too. `memory`: of what their nodes are."""
 
-    def __init__(self, scene, reports, memory):
-        self._scene, self._reports, self._memory = scene, reports, memory
+    def __init__(self, scene, memory):
+        self._scene, self._memory, self._reports = scene, memory, memory.reports
 
     def add(self, obj, matrix, links):
         """Add the light of a Blender object that stands in the world by `matrix` (4, 4); `links`: the `LightLinks`."""

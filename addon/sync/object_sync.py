@@ -14,6 +14,7 @@ from .compat import has_geometry_sets
 from .contents import SILENT, Content, Contents
 from .keys import original_key
 from .light_linking import LightLinks
+from .lights import Lights
 from .memory import ALWAYS
 from .pixel_sizes import STRANDS, PixelSizes
 from .placement import MANY, Placed, Stand, World, place, placed_matrices
@@ -67,22 +68,22 @@ class _OfObject:
 
 
 class ObjectSync:
-    """Reads the objects of a depsgraph, a `SceneCopies`, then places them in the engine scene."""
+    """Reads the objects of a depsgraph, a `SceneCopies`, then places them and the lights in the engine scene. `eyes`:
+    as of `PixelSizes`."""
 
-    def __init__(self, scene, memory, shadings, lights, reports, depsgraph, copies, eyes):
-        self._scene, self._memory, self._shadings = scene, memory, shadings
-        self._lights, self._reports, self._copies = lights, reports, copies
-        self._depsgraph = depsgraph
-        self._override = depsgraph.view_layer.material_override
+    def __init__(self, scene, copies, shadings, eyes, memory):
+        self._scene, self._copies, self._shadings, self._memory = scene, copies, shadings, memory
+        self._depsgraph, self._reports, self._lights = copies.depsgraph, memory.reports, Lights(scene, memory)
+        self._override = self._depsgraph.view_layer.material_override
         self._seen = self._look()
         self._collect()
         lights = [copies.obj for copies in self._fresh() if copies.kind == "LIGHT"]
         strands = [copies for copies in self._fresh() if copies.kind in STRANDS]
-        self._links = LightLinks(lights, reports)
-        self._visibilities = Visibilities(depsgraph.view_layer, self._links)
+        self._links = LightLinks(lights, self._reports)
+        self._visibilities = Visibilities(self._depsgraph.view_layer, self._links)
         self.pixels = PixelSizes(eyes, strands)
         memory.get("pixel sizes", self.pixels.settle, version=object())
-        self._contents = Contents(depsgraph, self.pixels, memory)
+        self._contents = Contents(self._depsgraph, self.pixels, memory)
         self._common = memory.get("common", lambda _: object(), (self._common_key(), self._links.groups))
         self._parts = []
 

@@ -15,7 +15,6 @@ from .image_state import changed_images, image_states
 from .images import FRAME, Images, image_places
 from .instancing import SceneCopies
 from .keys import original_key
-from .lights import Lights
 from .memory import Memory
 from .object_sync import ObjectSync
 from .reports import Reports
@@ -99,8 +98,7 @@ class SceneReader:
             scene.world = self._world(world, images, reports)
             layers = tuple(owner for owner in (view_layer, depsgraph.scene_eval, world) if owner is not None)
             shadings = Shadings(images, reports, layers, memory, self._materials, scene.outline_attribute)
-            lights = Lights(scene, reports, memory)
-            objects = ObjectSync(scene, memory, shadings, lights, reports, depsgraph, copies, eyes)
+            objects = ObjectSync(scene, copies, shadings, eyes, memory)
         with timed(statistics.seconds, "read"):
             statistics.objects |= objects.read()
         with timed(statistics.seconds, "place"):
