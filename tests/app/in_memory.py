@@ -49,6 +49,7 @@ def build_scene():
     """A cloud, shapes, an instanced mesh, a textured material, and something that moves on each frame."""
     scene = bpy.context.scene
     scene.render.engine, scene.conic.preview_samples, scene.frame_end = "CONIC", 1, 250
+    scene.render.preview_pixel_size = "2"  # redraws are faster, and a film is still a MiB
     rng = np.random.default_rng(0)
     center = rng.normal(scale=0.6, size=(SPHERES, 3)).astype(np.float32)
     cloud = new_point_cloud("Cloud", center, np.full(SPHERES, 0.02, np.float32), bpy.data.materials["Material"])

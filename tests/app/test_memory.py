@@ -18,8 +18,8 @@ from tests.app.screen import blender_window, virtual_screen
 
 SIZE = 640, 480
 COUNTS = {
-    "edits": int(os.environ.get("CONIC_MEMORY_EDITS", "240")),
-    "frames": int(os.environ.get("CONIC_MEMORY_FRAMES", "80")),
+    "edits": int(os.environ.get("CONIC_MEMORY_EDITS", "120")),
+    "frames": int(os.environ.get("CONIC_MEMORY_FRAMES", "40")),
 }
 #: KiB each, more than in Solid view. What Conic has of the cloud, of a mesh or of a film is a MiB or more.
 MOST = {"edits": 20.0, "frames": 50.0}
