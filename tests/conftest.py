@@ -1,6 +1,7 @@
 """What all tests share: hypothesis' profile, Blender with Conic registered from this checkout, and how Python ends."""
 
 import atexit
+import gc
 import os
 import sys
 
@@ -28,6 +29,12 @@ def empty_blender(registered):
     import bpy
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
+def pytest_collection_finish(session):
+    """Whoever collects garbage need not look through the tests themselves, which are thousands of objects."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.hookimpl(trylast=True)

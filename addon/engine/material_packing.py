@@ -197,10 +197,10 @@ def _may_be(value):
 
 def _constant(value, kind, stand_in):
     """The numbers of a member, of one that varies those that stand for it."""
-    size = 1 if kind == "float" else 3
     if is_constant(value):
         return as_type(value, kind).value
-    return np.broadcast_to(stand_in if isinstance(value, Expression) else value, (size,))
+    value = stand_in if isinstance(value, Expression) else value
+    return value if hasattr(value, "__len__") else (value,) * (1 if kind == "float" else 3)
 
 
 def _text(number):
