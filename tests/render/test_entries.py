@@ -16,11 +16,9 @@ SIZE = (93, 71)  # tiles end within work groups
 CASES = {
     "plain": {},
     "samples": {"samples": 3, "shadows": "TINTED"},
-    "corners": {"corner_rays": True, "max_depth": 4},
-    "counted": {"count_rays": True, "shadows": "TRANSPARENT"},
+    "counted": {"corner_rays": True, "max_depth": 4, "count_rays": True, "shadows": "TRANSPARENT"},
     "dropped": {"stack_limit": 1, "max_depth": 6},
-    "outlines": {"outlines": Outlines(), "samples": 2, "count_rays": True},
-    "depth_cue": {"depth_cue": DepthCue(), "film_transparent": True},
+    "guided": {"outlines": Outlines(), "depth_cue": DepthCue(), "film_transparent": True, "samples": 2},
 }
 
 
@@ -80,11 +78,16 @@ def test_both_entries_draw_the_same_picture(computing, case):
     assert_same(f"entries_{case}", *pair)
 
 
+@pytest.fixture(scope="module")
+def whole(device):
+    """The whole picture (h, w, 4)."""
+    return drawn(device, softly_lit(), "FRAGMENT")[0]
+
+
 @pytest.mark.parametrize("border", [(5, 3, 40, 31), (0, 0, 1, 1), (91, 60, 2, 11)])
-def test_a_border_is_the_part_of_the_whole_picture(computing, border):
-    scene, (x, y, width, height) = softly_lit(), border
-    whole, _ = drawn(computing, scene, "FRAGMENT")
-    part, statistics = drawn(computing, scene, "COMPUTE", border=border)
+def test_a_border_is_the_part_of_the_whole_picture(computing, whole, border):
+    x, y, width, height = border
+    part, statistics = drawn(computing, softly_lit(), "COMPUTE", border=border)
     assert statistics["entry"] == "COMPUTE" and part.shape == (height, width, 4)
     assert np.abs(part - whole[y : y + height, x : x + width]).max() < 1e-3
 
