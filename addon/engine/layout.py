@@ -5,8 +5,9 @@ the other in a data texture of fixed width, several small record types may share
 of its own. The same description gives the uniform block `Frame`, whose std140 layout is the same sequence of
 four-float groups.
 
-Integers are stored as float values, which is exact below 2^24 and survives every driver (bit patterns may not). An
-index that may grow past that is stored in two fields, see `split_index`.
+Integers are stored as float values, which survives every driver (bit patterns may not). They are not negative and
+less than 2^23, so that the shader finds their bits by an addition: `WHOLE` of `record_glsl`. An index that may grow
+past that is stored in two fields, see `split_index`.
 """
 
 from dataclasses import dataclass
@@ -258,7 +259,7 @@ LIGHT = _record(
     ("receivers", "int", "bits of `scene.Visibility` that what it lights must have; 0: it lights everything"),
     ("blockers", "int", "bits that what casts its shadows must have"),
     ("emitter", "int", "0: a lamp; 1: a surface of the scene that glows, EMITTER_VARIES: not everywhere the same"),
-    ("sides", "int", "of what is flat: 1 it shines to the front, -1 to the back, 0 to both"),
+    ("sides", "float", "of what is flat: 1 it shines to the front, -1 to the back, 0 to both"),
 )
 # A record for each light where one of them has extent or a cone, else none.
 LIGHT_SHAPE = _record(
@@ -444,11 +445,14 @@ FIXED_UV = 4.0
 INDEX_BITS = 26
 COUNT_BITS = 3
 MAX_LEAF_SIZE = 1 << COUNT_BITS
-LOW_BITS = 24
+LOW_BITS = 23
+
+#: Up to here float32 holds every integer.
+EXACT = 1 << 24
 
 
 def split_index(index):
-    """Split non-negative integers below 2^40 into two parts below 2^24 that float32 holds exactly: (low, high)."""
+    """Split non-negative integers below 2^40 into two parts below 2^23: (low, high)."""
     index = np.asarray(index, np.int64)
     return index & ((1 << LOW_BITS) - 1), index >> LOW_BITS
 
@@ -477,7 +481,7 @@ def most_texels(max_texture_size):
 
 def next_start(texels):
     """The first texel from number `texels` on at which records may begin: one whose number float32 holds."""
-    return texels if texels < 1 << LOW_BITS else -(-texels // DATA_WIDTH) * DATA_WIDTH
+    return texels if texels < EXACT else -(-texels // DATA_WIDTH) * DATA_WIDTH
 
 
 def data_texture(texels):

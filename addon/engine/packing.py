@@ -284,8 +284,8 @@ class _Packer:
     def _take_rows(self):
         """(First, number) of rows of the texture of instances."""
         arena, texels = self.residency.arenas["row"], self.plan.instance_texels(0)
-        near = arena.end * layout.DATA_WIDTH + texels < 1 << layout.LOW_BITS
-        rows = -(-self.plan.instance_texels(0 if near else 1 << layout.LOW_BITS) // layout.DATA_WIDTH)
+        near = arena.end * layout.DATA_WIDTH + texels < layout.EXACT
+        rows = -(-self.plan.instance_texels(0 if near else layout.EXACT) // layout.DATA_WIDTH)
         return arena.take(rows), rows
 
     def _new_instances(self, trees, attributes):

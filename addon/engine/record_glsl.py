@@ -25,7 +25,7 @@ def reader(record):
     values = ""
     for field, texel, components in _places(record):
         value = f"t{texel}.{components}"
-        values += f"  record.{field.name} = {f'int({value})' if field.type == 'int' else value};\n"
+        values += f"  record.{field.name} = {f'WHOLE({value})' if field.type == 'int' else value};\n"
     return (
         f"{struct(record)}"
         f"{record.struct_name} read_{record.name}(int index) {{\n"
@@ -56,12 +56,18 @@ def fetch(texture):
 
 
 def constants():
-    """GLSL defines that go with the packing of nodes and indices."""
+    """GLSL defines that go with the packing of nodes and indices.
+
+    WHOLE is the integer that a float of 0 to 2^23 - 1 is: 2^23 more has the integer for its lowest bits. A conversion
+    takes graphics processors as long or longer, and LLVM 22, which Mesa's software rasteriser compiles with, makes it
+    of six instructions for each pixel.
+    """
     leaf_mask = (1 << 32 - layout.INDEX_BITS) - 1
     kinds = "".join(f"#define KIND_{kind.upper()} {number}\n" for number, kind in enumerate(layout.KINDS))
     return (
         f"{kinds}"
         f"#define KIND_COUNT {len(layout.KINDS)}\n"
+        "#define WHOLE(x) (floatBitsToInt((x) + 8388608.0) & 0x7fffff)\n"
         f"#define REFERENCE(first, leaf) ((first) + ((leaf) << {layout.LOW_BITS}))\n"
         f"#define REFERENCE_INDEX(reference) ((reference) & {(1 << layout.INDEX_BITS) - 1})\n"
         f"#define REFERENCE_IS_INNER(reference) (((reference) >> {layout.INDEX_BITS}) == 0)\n"

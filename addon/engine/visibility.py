@@ -2,10 +2,12 @@
 
 from enum import IntFlag
 
+from . import layout
+
 _FIRST_GROUP = 7
 
-#: Groups of objects that lights can be linked to: as many bits as float32 holds beside the others.
-GROUPS = 24 - _FIRST_GROUP
+#: Groups of objects that lights can be linked to: as many bits as a record's integers have beside the others.
+GROUPS = layout.LOW_BITS - _FIRST_GROUP
 
 
 class Visibility(IntFlag):

@@ -108,7 +108,7 @@ vec3 light_of_ball(inout Light light, LightShape shape, vec3 point, bool sampled
 /* The cosine of what leaves a flat light towards a point seen from it, 0 on a side that does not shine. */
 float light_facing(Light light, float cosine)
 {
-  return light.sides == 0 ? abs(cosine) : max(float(light.sides) * cosine, 0.0);
+  return light.sides == 0.0 ? abs(cosine) : max(light.sides * cosine, 0.0);
 }
 
 /* A rectangle, an ellipse or a triangle. With a spread it is seen through a grid of slats, which hides of it the
@@ -174,7 +174,7 @@ vec3 light_shaped_at(inout Light light, int index, vec3 point, bool sampled, vec
       area = emitter_tube(shape, u, light.position, normal);
     }
     else {
-      area = emitter_ellipsoid(shape, point, light.sides < 0, u, light.position, normal);
+      area = emitter_ellipsoid(shape, point, light.sides < 0.0, u, light.position, normal);
     }
     vec3 to_light = light.position - point;
     range = length(to_light);

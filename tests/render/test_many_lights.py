@@ -9,6 +9,7 @@ import pytest
 from addon.engine import Camera, Light, Material, Scene, Session, Settings, World, light_packing, render
 from addon.engine.primitives import Spheres
 from addon.engine.scene import Geometry, Instances, Visibility
+from addon.engine.visibility import GROUPS
 
 
 def hall(count, seed=0):
@@ -112,7 +113,7 @@ def linked(receivers=0, blockers=0, groups=0):
     return scene
 
 
-@pytest.mark.parametrize("number", [0, 9, 16])
+@pytest.mark.parametrize("number", [0, 9, GROUPS - 1])
 def test_groups_say_what_is_lit_and_what_shades(device, number):
     bit = int(Visibility.group(number))
 

@@ -339,10 +339,10 @@ def test_surfaces_of_instances(device, seed):
 
 
 def test_references_survive_the_gpu(device):
-    """Indices past 2^24, kinds and counts as numpy packs them and as GLSL takes them apart."""
+    """Indices past 2^23, kinds and counts as numpy packs them and as GLSL takes them apart."""
     rng = np.random.default_rng(0)
     last = 2**layout.INDEX_BITS - 1
-    index = np.concatenate([[0, 1, 2**24 - 1, 2**24, 2**24 + 1, last], rng.integers(0, last, 5000, endpoint=True)])
+    index = np.concatenate([[0, 1, 2**23 - 1, 2**23, 2**23 + 1, last], rng.integers(0, last, 5000, endpoint=True)])
     kind = rng.integers(0, layout.KINDS.index("instance"), len(index), endpoint=True)
     count = rng.integers(1, layout.MAX_LEAF_SIZE, len(index), endpoint=True)
     low, high = layout.split_index(index)

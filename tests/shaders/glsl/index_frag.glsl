@@ -4,10 +4,10 @@
 void main()
 {
   TestValue value = read_test_value(TEST_INDEX);
-  int reference = REFERENCE(int(value.a.x), int(value.a.y));
+  int reference = REFERENCE(WHOLE(value.a.x), WHOLE(value.a.y));
   int index = REFERENCE_INDEX(reference);
   int leaf = LEAF_OF(reference);
   out_color = vec4(float(LEAF_KIND(leaf)), float(LEAF_COUNT(leaf)), float(index & 65535), float(index >> 16));
-  int inner = REFERENCE(int(value.a.z), int(value.a.w));
+  int inner = REFERENCE(WHOLE(value.a.z), WHOLE(value.a.w));
   out_root = vec4(REFERENCE_IS_INNER(reference), REFERENCE_IS_INNER(inner), float(inner & 65535), float(inner >> 16));
 }
