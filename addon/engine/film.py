@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-#: What one draw may take before a driver or a waiting user loses patience, in seconds.
-TILE_SECONDS = 0.04
+#: What one draw may take before a driver or a user who waits loses patience, in seconds. Where the processor draws, one
+#: of its threads has nothing to do at the end of each.
+TILE_SECONDS = 0.16
 #: The alpha of a sample that the driver gave up: far above what samples sum up to.
 UNENDED_ALPHA = 1e30
 _FIRST_TILE_PIXELS = 4096
