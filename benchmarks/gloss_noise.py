@@ -17,7 +17,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from addon.engine import Camera, Image, Light, Material, Scene, Settings, World, light_packing, loaded_scene, render
+from addon.engine import Camera, Image, Light, Material, Scene, Settings, World, light_packing, render, scene_program
 from addon.engine.devices.headless import HeadlessDevice
 from benchmarks.world_light_noise import SIDE, panorama
 
@@ -65,7 +65,7 @@ def scene_of(material, light):
 def one_way():
     """The world and what glows are found by rays alone, lamps are asked alone."""
     with (
-        mock.patch.object(loaded_scene, "_gloss_asks_world", lambda packed: False),
+        mock.patch.object(scene_program, "_gloss_asks_world", lambda packed: False),
         mock.patch.object(light_packing, "_shared_area", lambda emitters, shows, area: area),
         mock.patch.object(light_packing, "_is_seen", lambda light: False),
     ):

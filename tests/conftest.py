@@ -15,9 +15,13 @@ settings.load_profile("conic")
 
 @pytest.fixture(scope="session")
 def registered():
-    """The add-on, registered; unregistered before Python ends, where Blender 4.2 would crash and 4.5 hang."""
+    """The add-on, registered in Blender's factory state; unregistered before Python ends, where Blender 4.2 would crash
+    and 4.5 hang."""
+    import bpy
+
     import addon
 
+    bpy.ops.wm.read_factory_settings(use_empty=True)
     addon.register()
     yield addon
     addon.unregister()
@@ -25,10 +29,11 @@ def registered():
 
 @pytest.fixture
 def empty_blender(registered):
-    """Blender's factory state with nothing in the scene, Conic registered."""
+    """A new file of Blender's with nothing in the scene, Conic registered. Preferences stay as they are: to read them
+    takes much longer than most tests do."""
     import bpy
 
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 
 
 def pytest_collection_finish(session):

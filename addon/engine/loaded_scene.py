@@ -1,4 +1,4 @@
-"""A scene on a device: its textures, its program, and what draws need to know of it. Any number of sessions use it.
+"""A scene on a device, which others take the place of. Any number of sessions use it.
 
 A scene takes the place of the one before in two parts: `prepare` is the processor's work, `apply` the GPU's. What is
 there can be drawn until `apply` is through.
@@ -9,24 +9,19 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from . import depth_cue, entries, layout, shader_source
+from . import entries, shader_source
 from .changes import Change
+from .drawn_scene import DrawnScene
 from .errors import DeviceError, SceneError
-from .film import UNENDED_ALPHA
 from .new_textures import NewTextures
 from .packed_scene import PackedScene, table_changes
 from .packing import pack
 from .scene import Camera, Scene
+from .scene_program import features_of, source_of
 from .settings import Settings
-from .shader_source import ProgramSource
 from .timing import timed
-from .visibility import Visibility
-from .world_light import WorldLight, light_of_world, world_digest
+from .world_light import light_of_world, world_digest
 
-#: Surfaces that a shadow ray may pass before it counts as blocked.
-_SHADOW_SURFACES = 32
-#: The feature of the shader that each way of shadows needs.
-_SHADOW_FEATURES = {"TRANSPARENT": "TRANSPARENT_SHADOWS", "TINTED": "TINTED_SHADOWS"}
 #: With these the shader must know whether there are instances: shapes in the world's space have no visibility.
 _ASK_FOR_INSTANCES = {"HAS_VISIBILITY", "HAS_SHADOW_CATCHER", "HAS_LIGHT_LINKING"}
 
@@ -63,80 +58,6 @@ class Update:
         """Whether the quick trees of the scene before are still there: good ones of them are of use yet."""
         ours, its = self.packed.residency.quick, self.before.packed.residency.quick if self.before else []
         return set(map(id, its)) <= set(map(id, ours))
-
-
-@dataclass(eq=False)
-class DrawnScene:
-    """All that a draw needs. `textures` and the texels that there is room for are by name; `source` and `features`
-    are those of the `program`. `scene`: what it was made of, None unless its trees are to be improved."""
-
-    scene: Scene | None
-    packed: PackedScene
-    settings: Settings
-    camera: Camera
-    world_light: WorldLight | None
-    world_digest: bytes
-    textures: dict
-    rooms: dict
-    source: ProgramSource
-    features: frozenset
-    program: object
-
-    @property
-    def counts(self):
-        """Whether rays are counted."""
-        return _counts(self.settings)
-
-    @property
-    def entry(self):
-        """Which entry of the path tracer the program has, FRAGMENT or COMPUTE."""
-        return "COMPUTE" if self.source.is_compute else "FRAGMENT"
-
-    @property
-    def outputs(self):
-        """What the program writes, an attachment of the film each."""
-        return self.source.outputs
-
-    def frame_values(self, camera):
-        """Members of the record `Frame` that depend on the scene, the settings and the camera."""
-        matrix = np.asarray(camera.matrix, np.float64)
-        packed, settings = self.packed, self.settings
-        left, right, bottom, top = camera.window
-        values = {
-            **packed.frame,
-            **(self.world_light.frame if self.world_light else {}),
-            "camera_origin": matrix[:3, 3] - packed.origin,
-            "camera_right": matrix[:3, 0],
-            "camera_up": matrix[:3, 1],
-            "camera_forward": -matrix[:3, 2],
-            "orthographic": camera.orthographic,
-            "clip_start": camera.clip[0],
-            "clip_end": camera.clip[1],
-            "window": (left, bottom, 1.0 / (right - left), 1.0 / (top - bottom)),
-            "world_origin": packed.origin,
-            "max_depth": settings.max_depth,
-            "shadows_pass": packed.shadows_pass[settings.shadows],
-            "weight_cutoff": settings.weight_cutoff,
-            "ao_distance": settings.ao_distance or 1e30,
-            "ao_factor": settings.ao_factor,
-            "ao_rays": settings.ao_rays,
-            "film_transparent": settings.film_transparent,
-        }
-        if settings.depth_cue:
-            values |= depth_cue.frame_values(settings.depth_cue, camera, packed.bounds, packed.origin)
-        return values
-
-    def draw(self, device, target, rectangle, values):
-        """Draw a rectangle of a target whose attachments are `outputs`; `values`: members of the record `Frame`."""
-        device.draw(self.program, target, rectangle, self.textures, frame_record(values))
-
-    def draw_outside(self, device):
-        """Draw one pixel of a target that is thrown away, and whose sides, as most do, are no powers of two: Mesa's
-        software rasteriser compiles compute programs anew where these are."""
-        scratch = device.target(3, 3, len(self.outputs))
-        self.draw(device, scratch, (0, 0, 1, 1), self.frame_values(self.camera))
-        device.read(scratch, 0, (0, 0, 1, 1))
-        device.release(scratch)
 
 
 class LoadedScene:
@@ -218,14 +139,14 @@ class LoadedScene:
     def _source(self, before, packed, settings, world_light):
         """(Source, features) of the program: the one that is there if it can draw things that the scene has no more,
         for compiling takes seconds; else the one that has no more than it needs."""
-        features, entry = _features(packed, settings, world_light), entries.known(self.device, settings.entry)
+        features, entry = features_of(packed, settings, world_light), entries.known(self.device, settings.entry)
         if self.lasting and before:
             spare = (before.features - features) & shader_source.SPARE
             if spare and not features & _ASK_FOR_INSTANCES:
-                source = _source(packed, settings, features | spare, entry)
+                source = source_of(packed, settings, features | spare, entry)
                 if source == before.source:
                     return source, features | spare
-        return _source(packed, settings, features, entry), features
+        return source_of(packed, settings, features, entry), features
 
     # The GPU's part
 
@@ -355,56 +276,3 @@ class LoadedScene:
 def _same_values(these, those):
     """Whether two dictionaries have the same numbers or arrays."""
     return these.keys() == those.keys() and all(np.array_equal(value, those[key]) for key, value in these.items())
-
-
-def frame_record(values):
-    """The uniform block (n,) float32 of members of the record `Frame` by name."""
-    record = layout.FRAME.zeros(1)
-    for name, value in values.items():
-        record[name] = value
-    return record.view(np.float32)
-
-
-def _counts(settings):
-    return settings.count_rays or settings.may_drop
-
-
-def _outputs(settings):
-    """What the program writes, an attachment of the film each."""
-    counters = ("out_rays", "out_dropped") if _counts(settings) else ()
-    guide = ("out_guide",) if settings.outlines else ()  # the last: of one sample only, it is not summed up
-    return ("out_color", *counters, *guide)
-
-
-def _features(packed, settings, world_light):
-    features = packed.features | _world_features(packed, settings, world_light) | settings.film_features
-    features -= {*_SHADOW_FEATURES.values()} - {_SHADOW_FEATURES.get(settings.shadows)}
-    return frozenset(features | ({"COUNT_RAYS"} if _counts(settings) else set()))
-
-
-def _source(packed, settings, features, entry):
-    """The source of the program that has these features."""
-    constants = packed.constants | {
-        "PATH_STACK_SIZE": settings.stack_size,
-        "SHADOW_SURFACES": _SHADOW_SURFACES,
-        "UNENDED_ALPHA": UNENDED_ALPHA,
-    }
-    programs = (("programs_lib.glsl", packed.programs),)
-    return shader_source.program(entries.FILES[entry], features, constants, _outputs(settings), generated=programs)
-
-
-def _world_features(packed, settings, world_light):
-    if world_light is None:
-        return set()
-    if settings.samples_world:
-        return {"HAS_WORLD_LIGHT"} | ({"HAS_WORLD_GLOSS"} if _gloss_asks_world(packed) else set())
-    return {"HAS_HEMISPHERE_LIGHT"} | ({"HAS_AMBIENT_OCCLUSION"} if settings.use_ao else set())
-
-
-def _gloss_asks_world(packed):
-    """Whether what is rough asks bright parts of the world for light, as what is diffuse does: where the world is the
-    same for all rays, and not the same everywhere."""
-    rays = Visibility.DIFFUSE | Visibility.GLOSSY | Visibility.TRANSMISSION
-    programs, program = packed.world_programs
-    alike = packed.world.visibility & rays == rays and "HAS_LIGHT_PATH" not in programs.features()
-    return alike and program is not None and "HAS_ROUGHNESS" in packed.features

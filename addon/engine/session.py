@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import outlines
+from .drawn_scene import frame_record
 from .errors import ConicError, SceneError
 from .film import TILE_SECONDS, Film, Pace
-from .loaded_scene import LoadedScene, frame_record
+from .loaded_scene import LoadedScene
 from .outlines import OutlinePass
 from .settings import Settings
 from .timing import timed

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from addon.engine import shader_source
-from addon.engine.loaded_scene import frame_record
+from addon.engine.drawn_scene import frame_record
 
 from .conic import Conic
 
