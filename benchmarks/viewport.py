@@ -36,7 +36,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 ENGINES = ["CONIC", "CYCLES", "BLENDER_EEVEE"]
-SCENES = ["points_1e3", "points_1e5", "points_1e6", "objects_1e3", "objects_1e4"]
+SCENES = ["points_1e3", "points_1e5", "points_1e6", "objects_1e3", "objects_1e4", "instances_1e5"]
 ACTIONS = ["open", "switch", "orbit", "move", "undo"]
 MILESTONES = ["first", "seen", "sharp", "done"]
 

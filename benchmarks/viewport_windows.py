@@ -64,7 +64,28 @@ def objects(count):
             bpy.context.scene.collection.objects.link(obj)
 
 
-PARTS = {"points": points, "objects": objects}
+def instances(count):
+    """So many instances of a ball of 80 triangles, made by geometry nodes."""
+    mesh = bpy.data.meshes.new("Places")
+    mesh.vertices.add(count)
+    mesh.vertices.foreach_set("co", centers(count).ravel())
+    tree = bpy.data.node_groups.new("Instances", "GeometryNodeTree")
+    for direction in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+    kinds = "NodeGroupInput", "GeometryNodeMeshIcoSphere", "GeometryNodeSetMaterial", "GeometryNodeInstanceOnPoints"
+    given, ball, painted, placed = (tree.nodes.new(kind) for kind in kinds)
+    ball.inputs["Radius"].default_value, ball.inputs["Subdivisions"].default_value = radius(count), 2
+    painted.inputs["Material"].default_value = paint("Warm", (0.8, 0.35, 0.1))
+    tree.links.new(ball.outputs["Mesh"], painted.inputs["Geometry"])
+    tree.links.new(given.outputs[0], placed.inputs["Points"])
+    tree.links.new(painted.outputs["Geometry"], placed.inputs["Instance"])
+    tree.links.new(placed.outputs["Instances"], tree.nodes.new("NodeGroupOutput").inputs[0])
+    obj = bpy.data.objects.new("Instances", mesh)
+    obj.modifiers.new("Instances", "NODES").node_group = tree
+    bpy.context.scene.collection.objects.link(obj)
+
+
+PARTS = {"points": points, "objects": objects, "instances": instances}
 
 
 def paint(name, color):
