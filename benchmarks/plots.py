@@ -62,6 +62,7 @@ def _ratios(values, path):
         axes.bar(x, [ratio for _, ratio in shown], width, label=program, color=COLORS[program], bottom=0.0)
     axes.axhline(1.0, color="black", linewidth=1.0)
     axes.set_yscale("log")
+    _tell_values(axes)
     axes.set_xticks(range(len(names)), names, rotation=30, ha="right")
     axes.set_ylabel("seconds / Conic's seconds")
     axes.set_title(f"Above 1: Conic is faster ({values['size']} x {values['size']})", fontsize=10)
@@ -69,15 +70,25 @@ def _ratios(values, path):
     _save(figure, path)
 
 
+def _tell_values(axes):
+    """Numbers at a logarithmic axis of values, not powers of ten."""
+    lower, upper = axes.get_ylim()
+    ticks = (part * 10.0**power for power in range(-4, 4) for part in (1, 2, 5))
+    axes.set_yticks([tick for tick in ticks if lower <= tick <= upper])
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter("")
+
+
 def _growth(values, path):
     """Lines: seconds of tracing against the number of primitives, by family."""
-    figure, axes = _figure(6.0, 4.0)
+    figure, axes = _figure(9.0, 3.6)
     for name, family in values["families"].items():
         count, seconds = [row["count"] for row in family["rows"]], [row["trace"]["median"] for row in family["rows"]]
         exponent = family["exponent"]
         axes.loglog(count, seconds, "o-", label=name if exponent is None else f"{name}: n^{exponent:.2f}")
     axes.set_xlabel("primitives")
     axes.set_ylabel("seconds of tracing")
+    _tell_values(axes)
     axes.set_title(f"{values['size']} x {values['size']}, depth 5", fontsize=10)
-    axes.legend(frameon=False)
+    axes.legend(frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
     _save(figure, path)
