@@ -60,8 +60,10 @@ def keep_settings():
 
 
 def settled():
-    """Whether rendered views have nothing to load. While another thread prepares it, nothing is drawn."""
-    return all(scene.settled for scene in scenes._scenes.values() if scene.sessions)
+    """Whether rendered views have nothing to load and their pictures are whole. While another thread prepares
+    something, or a sample takes long on a busy machine, nothing is drawn."""
+    used = [scene for scene in scenes._scenes.values() if scene.sessions]
+    return all(scene.settled and not any(session._tracing for session in scene.sessions) for scene in used)
 
 
 def picture():
