@@ -12,6 +12,7 @@ from addon.engine.light_tree import ALL_SIDES, build_light_tree, merged_cones
 from addon.engine.packing import pack
 from addon.engine.primitives import Spheres, Triangles
 from addon.engine.scene import Geometry, Instances, Visibility
+from addon.engine.visibility import GROUPS
 
 
 def lamps(count, seed=0):
@@ -190,11 +191,12 @@ def test_planes_that_glow_are_named():
 
 
 def test_groups():
-    scene = scene_of(lights=[replace(lamps(1)[0], receivers=Visibility.group(0), blockers=Visibility.group(16))])
+    last = Visibility.group(GROUPS - 1)
+    scene = scene_of(lights=[replace(lamps(1)[0], receivers=Visibility.group(0), blockers=last)])
     made = packed(scene)
     assert {"HAS_LIGHT_LINKING", "HAS_VISIBILITY"} <= made.features
     light = table(made, "light", 1)[0]
-    assert int(light["blockers"]) == Visibility.group(16) and int(light["receivers"]) == Visibility.group(0)
-    assert np.float32(Visibility.group(16) * 2 - 1) == Visibility.group(16) * 2 - 1, "float32 holds them all"
-    with pytest.raises(ValueError, match="17"):
-        Visibility.group(17)
+    assert int(light["blockers"]) == last and int(light["receivers"]) == Visibility.group(0)
+    assert last * 2 <= 1 << layout.LOW_BITS, "the integers of records hold them all"
+    with pytest.raises(ValueError, match=f"there are {GROUPS} groups, no number {GROUPS}"):
+        Visibility.group(GROUPS)
