@@ -78,7 +78,7 @@ def upper_tree(instances, bounds, kept=None, *, quick=False):
 def write_records(hits, surfaces, instances, order, roots):
     """Write the records (n,) of `layout.INSTANCE` and `layout.INSTANCE_SURFACE` of the instances in `order`.
 
-    `roots` (G,) int64: node at which the tree of a geometry begins.
+    `roots` (G,) int64: references to the geometries' trees.
     """
     low, high = layout.split_index(roots)
     for rows in pieces(len(order)):

@@ -88,14 +88,41 @@ NODE = _record(
     ("upper_1", "vec3", ""),
     ("leaf_1", "int", ""),
 )
+# In place of a tree: a record as large as a node, from its number on the cells, after these the items, see `grid`.
+GRID = _record(
+    "grid",
+    "nodes",
+    ("lower", "vec3", "lower corner of the first cell"),
+    ("row", "int", "from a cell to the next one along y"),
+    ("per_size", "vec3", "1 over the size of a cell"),
+    ("layer", "int", "from a cell to the next one along z"),
+    ("resolution", "vec3", "cells along each axis, without those around them"),
+    ("first_item", "int", "items that would have room in place of the cells"),
+    ("unused", "vec4", ""),
+)
+GRID_CELL = _record(
+    "grid_cell",
+    "nodes",
+    ("first", "int", "first item in it; where a ray's way ends 1"),
+    ("end", "int", "the item after the last; where a ray's way ends 0"),
+    ("unused", "vec2", ""),
+)
+GRID_ITEM = _record(
+    "grid_item",
+    "nodes",
+    ("base", "vec3", "of a cylinder its base, of a sphere its centre"),
+    ("radius", "float", "negative: only the inside is seen"),
+    ("axis", "vec3", "from a cylinder's base to its top, 0 for a sphere"),
+    ("reference", "int", "index of the primitive's record, twice; 1 more for a cylinder"),
+)
 INSTANCE = _record(
     "instance",
     "instances",
     ("to_object_x", "vec4", "first row of the 3x4 matrix from world to object space"),
     ("to_object_y", "vec4", "second row"),
     ("to_object_z", "vec4", "third row"),
-    ("root", "int", "index of the geometry's root node: low part"),
-    ("root_high", "int", "high part"),
+    ("root", "int", "index of the geometry's root node or grid: low part"),
+    ("root_high", "int", "what it is and the high part, as `leaf_0` of a node"),
     ("first_material", "int", "index of the material record of the geometry's material slot 0"),
     ("geometry", "int", "number of the geometry, for its attributes"),
     ("visibility", "int", "which rays see it and how, bits of `scene.Visibility`"),
@@ -360,9 +387,9 @@ FRAME = _record(
     ("world_x", "vec3", ""),
     ("seen_lamp_count", "float", "the first so many lights are met by rays"),
     ("world_y", "vec3", ""),
-    ("root", "float", "index of the node where rays begin: low part"),
+    ("root", "float", "index of the node or grid where rays begin: low part"),
     ("world_z", "vec3", ""),
-    ("root_high", "float", "high part"),
+    ("root_high", "float", "what it is and the high part"),
     ("max_depth", "float", "the eye ray has depth 1"),
     ("weight_cutoff", "float", "rays of smaller weight are not followed"),
     ("film_transparent", "float", "1: the sky leaves alpha 0"),
@@ -408,6 +435,9 @@ FRAME = _record(
 
 RECORDS = (
     NODE,
+    GRID,
+    GRID_CELL,
+    GRID_ITEM,
     INSTANCE,
     INSTANCE_SURFACE,
     SPHERE,
@@ -434,6 +464,9 @@ RECORDS = (
 
 #: Numbers of the kinds: those of primitives are also the labels of the tree's leaves. Planes stand in no tree.
 KINDS = ("sphere", "cylinder", "cone", "disc", "triangle", "instance", "plane")
+
+#: What a reference's kind is where it leads to a grid.
+GRID_KIND = len(KINDS)
 
 #: Kinds of primitives.
 TREE_KINDS = KINDS[: KINDS.index("instance")]
@@ -498,5 +531,6 @@ def records_of(texture, record, first=0):
 
 
 def shared(record):
-    """Whether other records lie in the same texture, so that this one starts at `frame_<record>_first`."""
-    return sum(other.texture == record.texture for other in RECORDS) > 1
+    """Whether other records lie in the same texture, so that this one starts at `frame_<record>_first`. Nodes and grids
+    are numbered from their texture's first texel on."""
+    return record.texture != NODE.texture and sum(other.texture == record.texture for other in RECORDS) > 1

@@ -12,7 +12,7 @@ _SIZE = 8
 _QUADRICS = np.isin(layout.KINDS[: len(BY_KIND)], ("cylinder", "cone"))
 _ROUND = _QUADRICS | np.isin(layout.KINDS[: len(BY_KIND)], "sphere")
 #: From so many primitives in a geometry on memory counts more than a little time.
-_MANY = 1 << 17
+MANY = 1 << 17
 
 INTERSECTION_COST = np.array([cls.intersection_cost for cls in BY_KIND], np.float32)
 _INTERSECTION_COST_OF_MANY = np.array([cls.intersection_cost_of_many for cls in BY_KIND], np.float32)
@@ -25,15 +25,22 @@ def sizes(counts):
 
 def costs(counts):
     """`intersection_cost` (K,) of `bvh.build`, likewise."""
-    return _INTERSECTION_COST_OF_MANY if counts.sum() >= _MANY else INTERSECTION_COST
+    return _INTERSECTION_COST_OF_MANY if counts.sum() >= MANY else INTERSECTION_COST
 
 
-def features(plan):
-    """The features of the shader that say which kinds are tested where."""
-    counts = plan.counts_in_trees
+def features(plan, in_grids):
+    """The features of the shader that say which kinds are tested where. `in_grids` (G,) bool: geometries that have a
+    grid in place of a tree."""
+    counts = np.where(in_grids[:, None], 0, plan.counts_in_trees)
     found = {f"HAS_{BY_KIND[label].kind.upper()}_LEAVES" for label in np.flatnonzero(counts.any(axis=0))}
     found |= {f"HAS_{BY_KIND[label].kind.upper()}_OUTSIDE" for label in np.flatnonzero(plan.outside)}
     quadrics, spheres = counts[:, _QUADRICS].any(axis=1), counts[:, _ROUND & ~_QUADRICS].any(axis=1)
+    if in_grids.any():
+        found.add("HAS_GRID")
+        if plan.counts_in_trees[in_grids][:, _QUADRICS].any():
+            found.add("HAS_GRID_CYLINDERS")
+        if not (plan.placed or counts.any()):
+            found.add("HAS_GRID_ALONE")
     if quadrics.any():
         found |= {"HAS_QUADRIC_LEAVES"} | ({"HAS_SPHERE_RUNS"} if (spheres & ~quadrics).any() else set())
     return found

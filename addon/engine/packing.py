@@ -294,7 +294,7 @@ class _Packer:
         instances = instance_packing.place(placed, plan, self.materials, self.origin)
         bounds, roots = np.zeros((len(plan.geometries), 2, 3)), np.zeros(len(plan.geometries), np.int64)
         for number, tree in trees.trees.items():
-            bounds[number], roots[number] = tree.bounds, tree.root
+            bounds[number], roots[number] = tree.bounds, tree.reference
         there = self.before.instances
         before = there.kept if there and self._is_good_enough(there) else None
         like_before = before is not None and len(before.form.bvh.order) == plan.leaves
@@ -324,10 +324,10 @@ class _Packer:
         return self.residency.stack_size
 
     def _root(self, trees):
-        """Index of the node where a traversal begins."""
+        """The reference to the node or the grid where a traversal begins."""
         if self.residency.instances:
-            return self.residency.instances.tree.root
-        return next((tree.root for tree in trees.trees.values()), 0)
+            return self.residency.instances.tree.reference
+        return next((tree.reference for tree in trees.trees.values()), 0)
 
     # What is few
 
@@ -388,7 +388,9 @@ class _Packer:
     def _features(self, planes):
         totals = self.plan.counts.sum(axis=0)
         features = {f"HAS_{cls.kind.upper()}" for cls, count in zip(BY_KIND, totals, strict=True) if count}
-        features |= leaves.features(self.plan) | self.materials.features()
+        in_grids = np.zeros(len(self.plan.geometries), bool)
+        in_grids[[number for number, resident in self.residency.geometries.items() if resident.tree.is_grid]] = True
+        features |= leaves.features(self.plan, in_grids) | self.materials.features()
         if len(planes):
             features.add("HAS_PLANE")
         if self.plan.placed:
@@ -407,7 +409,8 @@ class _Packer:
 
     def _statistics(self, trees, top, depth):
         plan = self.plan
-        nodes = sum(tree.nodes for tree in trees.trees.values()) + (top.nodes if top is not None else 0)
+        built = [*trees.trees.values(), *([top] if top is not None else [])]
+        nodes = sum(tree.nodes for tree in built if not tree.is_grid)
         if plan.largest in trees.trees:
             cost = trees.trees[plan.largest].sah_cost
         else:
@@ -416,6 +419,6 @@ class _Packer:
             "primitives": self.scene.primitive_counts(),
             "instances": sum(map(len, plan.placed)),
             "geometries": len({id(p.geometry) for p in plan.placed}),
-            "bvh": {"nodes": nodes, "depth": depth, "sah_cost": cost},
+            "bvh": {"nodes": nodes, "depth": depth, "sah_cost": cost, "grids": sum(tree.is_grid for tree in built)},
             "build": trees.seconds,
         }

@@ -67,6 +67,7 @@ def constants():
     return (
         f"{kinds}"
         f"#define KIND_COUNT {len(layout.KINDS)}\n"
+        f"#define KIND_GRID {layout.GRID_KIND}\n"
         "#define WHOLE(x) (floatBitsToInt((x) + 8388608.0) & 0x7fffff)\n"
         f"#define REFERENCE(first, leaf) ((first) + ((leaf) << {layout.LOW_BITS}))\n"
         f"#define REFERENCE_INDEX(reference) ((reference) & {(1 << layout.INDEX_BITS) - 1})\n"

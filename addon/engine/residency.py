@@ -19,13 +19,20 @@ from .primitives import BY_KIND
 @dataclass(frozen=True)
 class BuiltTree:
     """What is left of a tree when it has been packed. `bounds` (2, 3) of everything, `root` the index of its node;
-    `sah_cost` 0 where it was not asked for."""
+    `sah_cost` 0 where it was not asked for. `is_grid`: it is a grid in the room of so many nodes."""
 
     bounds: np.ndarray
     root: int
     nodes: int
     depth: int
     sah_cost: float
+    is_grid: bool = False
+
+    @property
+    def reference(self):
+        """What leads there, to be split by `layout.split_index`."""
+        leaf = int(layout.pack_leaf(layout.GRID_KIND, 1, 0)) if self.is_grid else 0
+        return self.root + (leaf << layout.LOW_BITS)
 
 
 @dataclass(frozen=True)

@@ -147,7 +147,8 @@ class Session:
         """What was loaded and drawn, as the command line writes it and the panel shows it; plain numbers and text.
 
         primitives: number by kind, those of instances each time. instances: how many stand in the scene, of how many
-        different geometries. bvh: nodes of all trees, depth of the deepest path, sah_cost of the largest tree.
+        different geometries. bvh: nodes of all trees, depth of the deepest path, sah_cost of the largest tree,
+        grids: how many geometries have one in place of a tree.
         seconds: build (trees and records), upload, compile, trace; first_picture: from the start of loading until each
         pixel had a sample, 0 before that. build: the seconds of building by stage. textures: bytes by name; gpu_bytes:
         those and the film's. device: its name. entry: how its program runs, FRAGMENT or COMPUTE. rays, only when they

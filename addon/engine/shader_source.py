@@ -28,11 +28,12 @@ _PLACES = {
 #: Features of shapes of which a scene may have none: a program with them can draw it all the same.
 SPARE = frozenset(
     [f"HAS_{kind.upper()}" for kind in layout.KINDS if kind != "instance"]
-    + [*_PLACES, "HAS_QUADRIC_LEAVES", "HAS_SPHERE_RUNS", "HAS_INSTANCES"]
+    + [*_PLACES, "HAS_QUADRIC_LEAVES", "HAS_SPHERE_RUNS", "HAS_GRID", "HAS_GRID_CYLINDERS", "HAS_INSTANCES"]
 )
 #: Names that shader files may test.
 FEATURES = SPARE.union(
     [
+        "HAS_GRID_ALONE",
         "HAS_PROGRAMS",
         "VORONOI_LOOKUP3",
         "HAS_GRADIENTS",
@@ -77,6 +78,9 @@ FEATURES = SPARE.union(
 
 #: Features that others need.
 NEEDS = _PLACES | {
+    "HAS_GRID": {"HAS_SPHERE"},
+    "HAS_GRID_ALONE": {"HAS_GRID", "HAS_SPHERE"},
+    "HAS_GRID_CYLINDERS": {"HAS_GRID", "HAS_CYLINDER"},
     "HAS_AMBIENT_OCCLUSION": {"HAS_HEMISPHERE_LIGHT"},
     "HAS_DEPTH_CUE": {"HAS_GUIDE"},
     "HAS_EMITTERS": {"HAS_LIGHT_SHAPES"},

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import bvh, layout, leaves
+from . import bvh, grid_packing, layout, leaves
 from .batches import batches, joined
 from .errors import SceneError
 from .node_packing import move_nodes, write_nodes
@@ -23,6 +23,10 @@ from .timing import timed
 QUICK_FROM = 1 << 14
 #: A refitted tree that costs so much more than a built one is built.
 WORN = 1.3
+
+
+#: Grids take about three times as much memory as trees: there are none in scenes of more primitives.
+_MOST_IN_GRIDS = 1 << 20
 
 
 class TreePacker:
@@ -89,8 +93,27 @@ class TreePacker:
             for label, part, order in rows_by_kind(tree, parts):
                 attributes.write((number, label), part, order)
             bounds = self._add_outside(number, outside, tree.bounds, move, attributes)
-            root = self._add_nodes(number, tree)
-        self._added_one(number, BuiltTree(bounds, root, len(tree), tree.depth, cost), attributes, kept, quick)
+        with timed(self.seconds, "grid"):
+            built = self._add_grid(number, parts, bounds, cost)
+        if built is None:
+            with timed(self.seconds, "records"):
+                built = BuiltTree(bounds, self._add_nodes(number, tree), len(tree), tree.depth, cost)
+        self._added_one(number, built, attributes, kept, quick)
+
+    def _add_grid(self, number, parts, bounds, tree_cost):
+        """Write a grid in place of a geometry's tree; its `BuiltTree`, None where the tree is better or is kept: what
+        moves takes its tree along."""
+        if self.keep or self.plan.counts.sum() > _MOST_IN_GRIDS:
+            return None
+        hits = {label: self._records(number, label, part)[0][: len(part)] for label, part in parts.items()}
+        made = grid_packing.better_grid(hits, self.bases[number], tree_cost)
+        if made is None:
+            return None
+        root, nodes = self._node_count, grid_packing.room(made)
+        records = self._new_nodes(nodes, are_tree=False)
+        grid_packing.write_grid(records.view(np.float32).reshape(-1, 4), made, hits, self.bases[number])
+        self._node_count += nodes
+        return BuiltTree(bounds, root, nodes, 0, grid_packing.cost(made, hits), is_grid=True)
 
     def _add_outside(self, number, parts, bounds, move, attributes):
         """Write the records of what stands outside of a geometry's tree with these `bounds`; the bounds of all."""
@@ -269,17 +292,18 @@ class TreePacker:
         self._node_count += len(tree)
         return root
 
-    def _new_nodes(self, count):
-        """Records of further nodes that are to be uploaded."""
-        self._nodes.append((layout.data_texture(count * layout.NODE.texels), count))
+    def _new_nodes(self, count, are_tree=True):
+        """Records of further nodes that are to be uploaded, or the room of so many."""
+        self._nodes.append((layout.data_texture(count * layout.NODE.texels), count, are_tree))
         return layout.records_of(self._nodes[-1][0], layout.NODE)[:count]
 
     def settle(self):
         """Find the place of all nodes, now that their number is known; `Resident`s by number of what was added."""
         self.node_first = self.residency.arenas["node"].take(self._node_count)
         if self.node_first:
-            for texture, count in self._nodes:
-                move_nodes(layout.records_of(texture, layout.NODE)[:count], self.node_first)
+            for texture, count, are_tree in self._nodes:
+                if are_tree:
+                    move_nodes(layout.records_of(texture, layout.NODE)[:count], self.node_first)
             for number, resident in self._added.items():
                 resident.tree = replace(resident.tree, root=resident.tree.root + self.node_first)
                 self.trees[number] = resident.tree
@@ -297,12 +321,12 @@ class TreePacker:
         if not self._node_count and self.node_first:
             return
         if len(self._nodes) == 1:
-            texture, _ = self._nodes.pop()
+            texture, *_ = self._nodes.pop()
         else:
             texture, start = layout.data_texture(max(self._node_count, 1) * layout.NODE.texels), 0
             nodes = layout.records_of(texture, layout.NODE)
             while self._nodes:
-                part, count = self._nodes.pop(0)
+                part, count, _ = self._nodes.pop(0)
                 nodes[start : start + count] = layout.records_of(part, layout.NODE)[:count]
                 start += count
         texels = layout.NODE.texels

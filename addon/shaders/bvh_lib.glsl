@@ -2,7 +2,8 @@
  *
  * A node holds the boxes of both its children. A reference to a child is one integer, which says what kind and how many
  * primitives a leaf holds and where the first one lies. An instance is a leaf of the upper tree: its geometry is walked with
- * the ray in object space, on the same stack, until the stack is back where it stood.
+ * the ray in object space, on the same stack, until the stack is back where it stood. A geometry may have a grid in place of a
+ * tree: a leaf that is all of it.
  *
  * Distances to boxes are compared by their bits, as integers: for positive floats the order is the same, a negative one is
  * less than any of them, and an integer's minimum is one instruction everywhere, where a float's may have to mind NaN. */
@@ -10,23 +11,15 @@
 #include "primitive_lib.glsl"
 #include "outside_lib.glsl"
 #include <node>
+#ifdef HAS_GRID
+#include "grid_lib.glsl"
+#endif
 #ifdef HAS_INSTANCES
 #include <instance>
 #include <instance_surface>
 #endif
 
 #define BVH_MISS 0x7f7fffff /* bits of the largest float */
-
-/* Where a ray has a component 0, a tiny one in its place gives the slab an interval without 0 * infinity. */
-float bvh_inverse_of(float x)
-{
-  return 1.0 / (abs(x) < 1e-30 ? (x < 0.0 ? -1e-30 : 1e-30) : x);
-}
-
-vec3 bvh_inverse(vec3 direction)
-{
-  return vec3(bvh_inverse_of(direction.x), bvh_inverse_of(direction.y), bvh_inverse_of(direction.z));
-}
 
 /* The ray's origin as the boxes' lower and upper faces see it, a few roundings apart: the intersection with a primitive
  * rounds by the largest coordinate, and a box that is told apart better than what it holds would lose hits at its faces.
@@ -46,7 +39,7 @@ Slabs bvh_slabs(Ray ray)
   Slabs slabs;
   slabs.origin_lower = ray.origin + error;
   slabs.origin_upper = ray.origin - error;
-  slabs.inverse = bvh_inverse(ray.direction);
+  slabs.inverse = ray_inverse(ray.direction);
   return slabs;
 }
 
@@ -104,6 +97,10 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
     return hit;
   }
 #endif
+#ifdef HAS_GRID_ALONE
+  grid_hit(REFERENCE_INDEX(REFERENCE(int(frame_root), int(frame_root_high))), world_ray, any_hit, hit);
+  return hit;
+#else
   Ray ray = world_ray;
   Slabs slabs = bvh_slabs(ray);
   /* References that wait, but the last, which is in a register: it is at hand while memory is read. The place beyond the last
@@ -207,6 +204,11 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
     }
 #endif
     float t_before = hit.t;
+#ifdef HAS_GRID
+    if (LEAF_KIND(leaf) == KIND_GRID) {
+      grid_hit(REFERENCE_INDEX(reference), ray, any_hit, hit);
+    }
+#endif
     primitive_leaf_hit(LEAF_KIND(leaf), REFERENCE_INDEX(reference), LEAF_COUNT(leaf), ray, hit);
     if (hit.t < t_before) {
 #ifdef HAS_INSTANCES
@@ -227,6 +229,7 @@ Hit bvh_traverse(Ray world_ray, float t_max, bool any_hit)
   }
 #endif
   return hit;
+#endif
 }
 
 #ifdef HAS_INSTANCES

@@ -60,6 +60,17 @@ Ray ray_make(vec3 origin, vec3 direction, int kind)
   return ray;
 }
 
+/* 1 over a direction. A tiny component in place of 0 gives a slab an interval without 0 * infinity. */
+float ray_inverse_of(float x)
+{
+  return 1.0 / (abs(x) < 1e-30 ? (x < 0.0 ? -1e-30 : 1e-30) : x);
+}
+
+vec3 ray_inverse(vec3 direction)
+{
+  return vec3(ray_inverse_of(direction.x), ray_inverse_of(direction.y), ray_inverse_of(direction.z));
+}
+
 Surface ray_make_surface(vec3 position, vec3 geometric_normal, vec3 shading_normal, vec2 uv, int material, float error)
 {
   Surface surface;

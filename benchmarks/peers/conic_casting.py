@@ -45,7 +45,7 @@ class ConicCasting(Conic):
         lights = [light.position - self._drawn.packed.origin for light in self.scene.lights]
         return shader_source.program(
             "cast_frag.glsl",
-            self._drawn.features & shader_source.SPARE,
+            self._drawn.features & (shader_source.SPARE | {"HAS_GRID_ALONE"}),
             self._drawn.packed.constants | {"CAST_LIGHTS": len(lights)},
             folders=_FOLDERS,
             generated=(("cast_lights_lib.glsl", _lights_glsl(lights)),),

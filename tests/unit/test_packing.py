@@ -88,7 +88,7 @@ def test_trees_that_are_built_together_lead_to_their_own_primitives(eye):
     scene = scene_of(eye=eye)
     twice = np.stack([np.eye(4)] * 2)
     scene.instances = [Instances(geometry, np.eye(4) if i % 2 else twice) for i, geometry in enumerate(geometries)]
-    packed = pack(scene, LIMIT)
+    packed = pack(scene, LIMIT, keep=True)
     hits = layout.records_of(packed.textures["instances"], layout.INSTANCE)[:600]
     point = {
         "sphere": (layout.SPHERE, "center"),
@@ -283,7 +283,7 @@ def test_few_of_a_kind_beside_many_stand_outside_of_the_tree():
     center = np.random.default_rng(0).uniform(-1, 1, (4096, 3))
     for count, outside in ((4096, True), (4000, False)):
         scene = scene_of(Spheres(center=center[:count], radius=0.01), floor)
-        packed = pack(scene, LIMIT)
+        packed = pack(scene, LIMIT, keep=True)
         assert {kind for kind, _, _ in leaves(packed)} == ({"sphere"} if outside else {"sphere", "triangle"})
         assert ("HAS_TRIANGLE_OUTSIDE" in packed.features) == outside != ("HAS_TRIANGLE_LEAVES" in packed.features)
         assert np.allclose(packed.bounds, [[-9, -9, -2], [9, 9, 1]], atol=0.05)

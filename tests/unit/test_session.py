@@ -76,7 +76,7 @@ def test_statistics_of_what_was_loaded_and_drawn():
         pass
     found = session.statistics()
     assert found["primitives"] == {"sphere": 7} and found["instances"] == 3 and found["geometries"] == 1
-    assert found["bvh"].keys() == {"nodes", "depth", "sah_cost"} and found["device"] == "no device"
+    assert found["bvh"].keys() == {"nodes", "depth", "sah_cost", "grids"} and found["device"] == "no device"
     assert found["textures"].keys() == {"nodes", "instances", "spheres", "sphere_surfaces", "tables", "attributes"}
     assert found["textures"]["spheres"] == 3 * 16
     assert found["gpu_bytes"] == sum(found["textures"].values()) + 8 * 4 * 16
