@@ -54,7 +54,7 @@ def measure(name, size, runs, absent):
                 continue
             stack.callback(peers[peer.name].close)
         warm, failures = in_turn({program: peer.trace for program, peer in peers.items()}, 1)
-        seconds, later = in_turn({program: peers[program].trace for program in warm}, runs)
+        seconds, later = in_turn({program: peers[program].trace for program in warm}, runs, twice=True)
         rays = {program: peers[program].rays() for program in seconds}
     conic = seconds["Conic"].median
     print(name, {p: round(s.median, 4) for p, s in seconds.items()}, failures | later, flush=True)
