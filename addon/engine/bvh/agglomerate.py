@@ -1,9 +1,12 @@
 """Bottom-up clustering of many boxes: parallel locally-ordered clustering.
 
 D. Meister, J. Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", TVCG
-2018. The clusters lie along a Morton curve; each looks `RADIUS` places to either side for the neighbour with
+2018. The clusters lie along a Morton curve; each looks some places to either side for the neighbour with
 which it would make the box of least area; two that choose each other merge. Every step is a handful of
 whole-array operations on ever fewer clusters, which suits numpy far better than partitioning does.
+
+They look far while they are small and less far later: the curve has then been thinned out, and what merges
+across a large part of it spoils the levels above.
 
 The one clever thing: an edge between places i and i + d is a single non-negative int32, the bits of the area
 as float32 (which order as the floats do) with the low `CODE_BITS` replaced by (d - 1, parity of i // d). The
@@ -18,7 +21,9 @@ import numpy as np
 from .boxes import half_areas, take_spans
 from .topology import Topology
 
-RADIUS = 8
+RADIUS = 8  # places
+LATER_RADIUS = 4  # once only a `LATER`th of the clusters is left
+LATER = 4
 CODE_BITS = 4  # d - 1 < 8, and the parity
 CODE_MASK = (1 << CODE_BITS) - 1
 CHUNK = 1 << 15  # clusters worked on at a time: the scratch arrays stay in the cache
@@ -35,7 +40,10 @@ def agglomerate(span: np.ndarray, ids: np.ndarray, topology: Topology, stop: int
         The spans (6, k) and the nodes (k,) of what remains, still along the curve.
     """
     coarse, codes = CODE_BITS, [_edge_codes(distance) for distance in range(1, RADIUS + 1)]
+    later = len(ids) // LATER
     while len(ids) > stop:
+        if len(ids) <= later:
+            codes = codes[:LATER_RADIUS]
         left, right = _mutual_pairs(_cheapest_edges(span, codes, coarse))
         # Sizes that grow steadily along the curve make chains in which only the last two choose each other.
         # Compare fewer bits of the areas then, in the end none: neighbours pair off.
