@@ -6,8 +6,6 @@ from . import grid, layout
 from .leaves import INTERSECTION_COST, MANY
 
 _SPHERE, _CYLINDER = (layout.KINDS.index(kind) for kind in ("sphere", "cylinder"))
-#: A node takes as much room as so many cells or items.
-_CELLS, _ITEMS = (layout.NODE.texels // record.texels for record in (layout.GRID_CELL, layout.GRID_ITEM))
 #: Share of a tree's cost up to which a grid takes its place: at 0.8 both take the same time.
 _WORTH = 0.7
 #: Indices that an item can refer to.
@@ -24,7 +22,8 @@ def better_grid(hits, bases, tree_cost):
         return None
     if any(bases[kind] + len(records) > _MOST for kind, records in hits.items()):
         return None
-    made = grid.build(*_capsules(hits))
+    base, axis, height, radius = _capsules(hits)
+    made = grid.build(base, height[:, None] * axis, radius)
     return made if made and cost(made, hits) < _WORTH * tree_cost else None
 
 
@@ -35,22 +34,44 @@ def cost(made, hits):
 
 def room(made):
     """Nodes that would have room in place of a grid."""
-    return 1 + -(-_cells_around(made) // _CELLS) + -(-len(made.items) // _ITEMS)
+    return int(_ends(made)[-1]) // layout.NODE.texels
 
 
 def write_grid(texels, made, hits, bases):
     """Write a grid into the texels (n, 4) of `room(made)` nodes; `hits` and `bases` as for `better_grid`."""
-    cell_texels = -(-_cells_around(made) // _CELLS) * layout.NODE.texels
-    head, cells, items = np.split(texels, [layout.NODE.texels, layout.NODE.texels + cell_texels])
-    _write_head(layout.records_of(head, layout.GRID)[0:1], made, cell_texels // layout.GRID_ITEM.texels)
-    _write_cells(layout.records_of(cells, layout.GRID_CELL)[: _cells_around(made)], made)
-    _write_items(layout.records_of(items, layout.GRID_ITEM)[: len(made.items)], made, hits, bases)
+    head, cells, items, references = (
+        layout.records_of(part, record)[:count]
+        for part, (record, count) in zip(np.split(texels, _ends(made)[:-1]), _parts(made), strict=True)
+    )
+    _write_head(head, made)
+    _write_cells(cells, made)
+    base, axis, height, radius = _capsules(hits)
+    items["base"], items["axis"] = base[made.items], axis[made.items]
+    items["height"], items["radius"] = height[made.items], radius[made.items]
+    numbers = [2 * (bases[kind] + np.arange(len(part))) + (kind == _CYLINDER) for kind, part in hits.items()]
+    references["reference"] = np.concatenate(numbers)[made.items]
 
 
-def _write_head(record, made, first_item):
+def _parts(made):
+    """(record, how many) of what a grid is made of, in this order."""
+    around = int((made.resolution + 2).prod())
+    items = len(made.items)
+    return (layout.GRID, 1), (layout.GRID_CELL, around), (layout.GRID_ITEM, items), (layout.GRID_REFERENCE, items)
+
+
+def _ends(made):
+    """Texels up to the end of each of these; they begin where nodes may."""
+    texels = np.array([count * record.texels for record, count in _parts(made)])
+    return np.cumsum(-(-texels // layout.NODE.texels)) * layout.NODE.texels
+
+
+def _write_head(record, made):
     row, depth, _ = made.resolution + 2
+    head, cells, items, _ = _ends(made)
     record["lower"], record["per_size"], record["resolution"] = made.lower, 1.0 / made.size, made.resolution
-    record["row"], record["layer"], record["first_item"] = row, row * depth, first_item
+    record["row"], record["layer"] = row, row * depth
+    record["first_item"] = (cells - head) // layout.GRID_ITEM.texels
+    record["first_reference"] = items - head
 
 
 def _write_cells(records, made):
@@ -61,24 +82,14 @@ def _write_cells(records, made):
     within["end"] = made.first[1:].reshape(within.shape)
 
 
-def _write_items(records, made, hits, bases):
-    base, axis, radius = _capsules(hits)
-    records["base"], records["axis"], records["radius"] = base[made.items], axis[made.items], radius[made.items]
-    references = [2 * (bases[kind] + np.arange(len(part))) + (kind == _CYLINDER) for kind, part in hits.items()]
-    records["reference"] = np.concatenate(references)[made.items]
-
-
 def _capsules(hits):
-    """Bases (n, 3), axes (n, 3) and radii (n,) of spheres and cylinders from their records."""
-    parts = [
-        (part["center"], np.zeros((len(part), 3), np.float32), part["radius"])
-        if kind == _SPHERE
-        else (part["base"], part["axis"], part["radius"])
-        for kind, part in hits.items()
-    ]
-    return tuple(np.concatenate(values) for values in zip(*parts, strict=True))
-
-
-def _cells_around(made):
-    """Number of the cells with those around them."""
-    return int((made.resolution + 2).prod())
+    """Bases (n, 3), unit axes (n, 3), heights (n,) and radii (n,) of spheres and cylinders from their records."""
+    found = []
+    for kind, part in hits.items():
+        if kind == _SPHERE:
+            found.append((part["center"], np.zeros((len(part), 3)), np.zeros(len(part)), part["radius"]))
+        else:
+            height = np.linalg.norm(part["axis"].astype(np.float64), axis=-1)
+            axis = part["axis"] / np.maximum(height, np.finfo(np.float32).tiny)[:, None]
+            found.append((part["base"], axis, height, part["radius"]))
+    return tuple(np.concatenate(values) for values in zip(*found, strict=True))

@@ -88,7 +88,8 @@ NODE = _record(
     ("upper_1", "vec3", ""),
     ("leaf_1", "int", ""),
 )
-# In place of a tree: a record as large as a node, from its number on the cells, after these the items, see `grid`.
+# In place of a tree: a record as large as a node, from its number on the cells, then the items, then what these
+# are, see `grid`.
 GRID = _record(
     "grid",
     "nodes",
@@ -98,7 +99,8 @@ GRID = _record(
     ("layer", "int", "from a cell to the next one along z"),
     ("resolution", "vec3", "cells along each axis, without those around them"),
     ("first_item", "int", "items that would have room in place of the cells"),
-    ("unused", "vec4", ""),
+    ("first_reference", "int", "references that would have room in place of the cells and items"),
+    ("unused", "vec3", ""),
 )
 GRID_CELL = _record(
     "grid_cell",
@@ -112,8 +114,14 @@ GRID_ITEM = _record(
     "nodes",
     ("base", "vec3", "of a cylinder its base, of a sphere its centre"),
     ("radius", "float", "negative: only the inside is seen"),
-    ("axis", "vec3", "from a cylinder's base to its top, 0 for a sphere"),
-    ("reference", "int", "index of the primitive's record, twice; 1 more for a cylinder"),
+    ("axis", "vec3", "of a cylinder, unit; 0 for a sphere"),
+    ("height", "float", "of a cylinder; 0 for a sphere"),
+)
+GRID_REFERENCE = _record(
+    "grid_reference",
+    "nodes",
+    ("reference", "int", "index of an item's record as a primitive, twice; 1 more for a cylinder"),
+    ("unused", "vec3", ""),
 )
 INSTANCE = _record(
     "instance",
@@ -438,6 +446,7 @@ RECORDS = (
     GRID,
     GRID_CELL,
     GRID_ITEM,
+    GRID_REFERENCE,
     INSTANCE,
     INSTANCE_SURFACE,
     SPHERE,

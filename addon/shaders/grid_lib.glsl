@@ -7,12 +7,12 @@
 #include <grid>
 #include <grid_cell>
 #include <grid_item>
+#include <grid_reference>
 
 float grid_item_hit(GridItem item, Ray ray, float t_max)
 {
 #ifdef HAS_GRID_CYLINDERS
-  float radius = abs(item.radius);
-  return quadric_hit(item.base, item.axis, radius, radius, item.radius > 0.0, ray, t_max);
+  return quadric_side_hit(item.base, item.axis, item.height, abs(item.radius), 0.0, item.radius > 0.0, ray, t_max);
 #else
   Sphere sphere;
   sphere.center = item.base;
@@ -78,7 +78,7 @@ void grid_hit(int number, Ray ray, bool any_hit, inout Hit hit)
     }
   }
   if (found >= 0) {
-    int reference = read_grid_item(items + found).reference;
+    int reference = read_grid_reference(4 * (number + 1) + grid.first_reference + found).reference;
     hit.kind = reference & 1;
     hit.index = reference >> 1;
   }

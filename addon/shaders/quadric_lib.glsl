@@ -17,8 +17,8 @@ vec2 quadric_roots(float a, float b, float c, float discriminant)
   return b < 0.0 ? vec2(near, far) : vec2(far, near);
 }
 
-/* Nearest t in (0, t_max), else t_max, on a side whose radius R(z) = r0 + k z grows linearly along `along`, the axis from
- * the base's centre to the apex's. |p x axis|^2 = R^2 holds the paper's cylinder (8) and cone (11) without a tip that would
+/* Nearest t in (0, t_max), else t_max, on a side whose radius R(z) = r0 + k z, k the slope, grows linearly along the unit axis
+ * from the base's centre to the apex's, up to the height. |p x axis|^2 = R^2 holds the paper's cylinder (8) and cone (11) without a tip that would
  * lie far away for a nearly cylindrical one; between the ends R keeps its sign, so the mirrored nappe is never met.
  *
  * Along the ray this is a t^2 + 2 b t + c = 0, measured from the ray's point closest to the middle of the body, so that the
@@ -26,15 +26,13 @@ vec2 quadric_roots(float a, float b, float c, float discriminant)
  * |R d - k dz p|^2 - |p x d|^2, p and d across the axis, where both squares keep theirs: (l - m)(l + m) of the lengths
  * would be no better, since they are rounded too, and takes two more roots. A ray steeper than the side
  * (a < 0) always meets the double cone, whatever rounding says near the tip. */
-float quadric_hit(vec3 base, vec3 along, float base_radius, float apex_radius, bool outside_seen, Ray ray, float t_max)
+float quadric_side_hit(vec3 base, vec3 axis, float height, float base_radius, float slope, bool outside_seen, Ray ray,
+                       float t_max)
 {
-  float height = length(along);
-  float per_height = 1.0 / max(height, QUADRIC_NO_HEIGHT); /* without a height it is a sphere */
-  vec3 axis = per_height * along;
-  float slope = per_height * (apex_radius - base_radius);
-  vec3 from_middle = (ray.origin - base) - 0.5 * along;
+  vec3 to_middle = (0.5 * height) * axis;
+  vec3 from_middle = (ray.origin - base) - to_middle;
   float closest = -dot(from_middle, ray.direction);
-  vec3 offset = from_middle + closest * ray.direction + 0.5 * along;
+  vec3 offset = from_middle + closest * ray.direction + to_middle;
   float z = dot(offset, axis);
   float dz = dot(ray.direction, axis);
   vec3 position = offset - z * axis;
@@ -56,6 +54,15 @@ float quadric_hit(vec3 base, vec3 along, float base_radius, float apex_radius, b
   bool enters = outside_seen && roots.x > 0.0 && heights.x >= 0.0 && heights.x <= height;
   bool leaves = roots.y > 0.0 && heights.y >= 0.0 && heights.y <= height;
   return min(t_max, min(enters ? roots.x : t_max, leaves ? roots.y : t_max));
+}
+
+/* The same with the way from the base's centre to the apex's; where it is 0 the body is a sphere. */
+float quadric_hit(vec3 base, vec3 along, float base_radius, float apex_radius, bool outside_seen, Ray ray, float t_max)
+{
+  float height = length(along);
+  float per_height = 1.0 / max(height, QUADRIC_NO_HEIGHT);
+  return quadric_side_hit(base, per_height * along, height, base_radius, per_height * (apex_radius - base_radius),
+                          outside_seen, ray, t_max);
 }
 
 /* The paper's u = theta / 2 pi in [0, 1), equations (32), (39) and (45), of a direction with these two coordinates. */
