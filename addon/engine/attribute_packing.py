@@ -1,6 +1,6 @@
 """The values of attributes on their way to the GPU."""
 
-from . import layout
+from . import data_texture
 from .residency import Upload
 from .threads import pieces
 
@@ -20,7 +20,7 @@ class AttributeWriter:
             self._ranges.setdefault(geometry, {})[name, kind] = (end, count)
             end += count
         self.numbers = frozenset(self._ranges)
-        self._texture = layout.data_texture(end - self._start)
+        self._texture = data_texture.zeros(end - self._start)
         self.upload = Upload(self._start, self._texture, end - self._start)
 
     def texels(self, key):

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from . import grid, layout
+from . import data_texture, grid, layout, reference
 from .leaves import INTERSECTION_COST, MANY
 
 _SPHERE, _CYLINDER = (layout.KINDS.index(kind) for kind in ("sphere", "cylinder"))
 #: Share of a tree's cost up to which a grid takes its place: at 0.8 both take the same time.
 _WORTH = 0.7
 #: Indices that an item can refer to.
-_MOST = 1 << layout.LOW_BITS - 1
+_MOST = 1 << reference.LOW_BITS - 1
 
 
 def better_grid(hits, bases, tree_cost):
@@ -40,7 +40,7 @@ def room(made):
 def write_grid(texels, made, hits, bases):
     """Write a grid into the texels (n, 4) of `room(made)` nodes; `hits` and `bases` as for `better_grid`."""
     head, cells, items, references = (
-        layout.records_of(part, record)[:count]
+        data_texture.records_of(part, record)[:count]
         for part, (record, count) in zip(np.split(texels, _ends(made)[:-1]), _parts(made), strict=True)
     )
     _write_head(head, made)

@@ -8,7 +8,7 @@ import weakref
 
 import numpy as np
 
-from . import layout
+from . import data_texture, layout, reference
 from .arena import Arena
 from .image import EXTENSIONS, INTERPOLATIONS
 from .residency import ResidentImage, Upload, is_same
@@ -29,13 +29,13 @@ def pack_images(images, limit):
         return records, None, []
     pixels, packings, warnings = _reduced(images, limit)
     starts = np.cumsum([0, *map(_texels, pixels, packings)])
-    records["first"], records["first_high"] = layout.split_index(starts[:-1])
+    records["first"], records["first_high"] = reference.split_index(starts[:-1])
     records["height"], records["width"] = np.array([p.shape[:2] for p in pixels]).T
     records["interpolation"] = [INTERPOLATIONS.index(image.interpolation) for image in images]
     records["extension"] = [EXTENSIONS.index(image.extension) for image in images]
     records["packing"] = packings
     records["coding"] = [_SRGB * image.srgb + _DIVIDED * image.divided for image in images]
-    texture = layout.data_texture(int(starts[-1]))
+    texture = data_texture.zeros(int(starts[-1]))
     texels = texture.reshape(-1, 4)
     for first, picture, packing in zip(starts, pixels, packings, strict=False):
         _write(texels[first:], picture.reshape(-1, 4), packing)
@@ -74,8 +74,8 @@ def _residents(images, records, start):
     """`ResidentImage`s of images whose texels lie from `start` on."""
     made = []
     for image, record in zip(images, records, strict=True):
-        first = start + int(record["first"]) + (int(record["first_high"]) << layout.LOW_BITS)
-        record["first"], record["first_high"] = layout.split_index(first)
+        first = start + int(record["first"]) + (int(record["first_high"]) << reference.LOW_BITS)
+        record["first"], record["first_high"] = reference.split_index(first)
         pixels = int(record["width"]) * int(record["height"])
         texels = _shared_texels(pixels, int(record["packing"]))
         made.append(ResidentImage(weakref.ref(image), record.copy(), first, texels))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import bvh, layout
+from . import bvh, layout, reference
 from .errors import SceneError
 from .residency import KeptTree
 from .scene import Instances
@@ -80,7 +80,7 @@ def write_records(hits, surfaces, instances, order, roots):
 
     `roots` (G,) int64: references to the geometries' trees.
     """
-    low, high = layout.split_index(roots)
+    low, high = reference.split_index(roots)
     for rows in pieces(len(order)):
         picked = order[rows]
         matrices, geometry = instances.matrices[picked], instances.geometry[picked]

@@ -7,69 +7,10 @@ four-float groups.
 
 Integers are stored as float values, which survives every driver (bit patterns may not). They are not negative and
 less than 2^23, so that the shader finds their bits by an addition: `WHOLE` of `record_glsl`. An index that may grow
-past that is stored in two fields, see `split_index`.
+past that is stored in two fields, see `reference.split_index`.
 """
 
-from dataclasses import dataclass
-
-import numpy as np
-
-#: Texels per row of every data texture: a power of two, so that an address needs a mask and a shift only.
-DATA_WIDTH_BITS = 12
-DATA_WIDTH = 1 << DATA_WIDTH_BITS
-
-_COMPONENTS = {"float": 1, "int": 1, "vec2": 2, "vec3": 3, "vec4": 4}
-
-
-@dataclass(frozen=True)
-class Field:
-    """One member of a record: its name, its GLSL type (float, int, vec2, vec3, vec4) and what it means."""
-
-    name: str
-    type: str
-    meaning: str
-
-    @property
-    def size(self):
-        """Number of floats it takes."""
-        return _COMPONENTS[self.type]
-
-
-@dataclass(frozen=True)
-class Record:
-    """A GPU record: `name` in snake_case, the data texture it lies in, its fields in order."""
-
-    name: str
-    texture: str
-    fields: tuple[Field, ...]
-    points_into: str = ""  # data texture of plain texels that it says where to read, "" for none
-
-    def __post_init__(self):
-        used = 0
-        for field in self.fields:
-            if used % 4 + field.size > 4:
-                raise ValueError(f"record {self.name}: field {field.name} straddles two texels")
-            used += field.size
-        if used % 4:
-            raise ValueError(f"record {self.name}: its fields do not fill whole texels")
-
-    @property
-    def texels(self):
-        """Number of RGBA32F texels of one record."""
-        return sum(field.size for field in self.fields) // 4
-
-    @property
-    def dtype(self):
-        """The numpy dtype of one record; all members are float32."""
-        return np.dtype([(f.name, np.float32) if f.size == 1 else (f.name, np.float32, (f.size,)) for f in self.fields])
-
-    @property
-    def struct_name(self):
-        return "".join(part.capitalize() for part in self.name.split("_"))
-
-    def zeros(self, count):
-        """An array (count,) of this record, all zero."""
-        return np.zeros(count, self.dtype)
+from .record import Field, Record
 
 
 def _record(name, texture, *fields, points_into=""):
@@ -482,61 +423,6 @@ TREE_KINDS = KINDS[: KINDS.index("instance")]
 
 #: Third number of a sphere's `rotation` where the other two are the uv of all of it: no rotation is as long.
 FIXED_UV = 4.0
-
-#: A reference to a child of a node is one integer of 32 bits: its index, above that what it is, 0 for an inner node.
-INDEX_BITS = 26
-COUNT_BITS = 3
-MAX_LEAF_SIZE = 1 << COUNT_BITS
-LOW_BITS = 23
-
-#: Up to here float32 holds every integer.
-EXACT = 1 << 24
-
-
-def split_index(index):
-    """Split non-negative integers below 2^40 into two parts below 2^23: (low, high)."""
-    index = np.asarray(index, np.int64)
-    return index & ((1 << LOW_BITS) - 1), index >> LOW_BITS
-
-
-def pack_leaf(kind, count, index_high):
-    """The `leaf` field of a node, what a reference has above the low part of its index: kind and number of primitives
-    (0: an inner node) and the high part of the index. ValueError for an index of more than `INDEX_BITS`."""
-    if np.max(index_high, initial=0) >> (INDEX_BITS - LOW_BITS):
-        raise ValueError(f"a reference has {INDEX_BITS} bits for an index")
-    holds = np.where(np.asarray(count) > 0, 1 + (np.asarray(kind) << COUNT_BITS) + np.asarray(count) - 1, 0)
-    return np.asarray(index_high) + (holds << (INDEX_BITS - LOW_BITS))
-
-
-def unpack_leaf(leaf):
-    """(kind, count, index_high) that `pack_leaf` was given; the kind of an inner node is of no meaning."""
-    leaf = np.asarray(leaf).astype(np.int64)
-    holds = leaf >> (INDEX_BITS - LOW_BITS)
-    kind, count = np.divmod(holds - 1, MAX_LEAF_SIZE)
-    return kind, np.where(holds > 0, count + 1, 0), leaf & ((1 << (INDEX_BITS - LOW_BITS)) - 1)
-
-
-def most_texels(max_texture_size):
-    """How many texels a data texture can have on a device: GLSL counts them with 32 bits."""
-    return min(DATA_WIDTH * max_texture_size, (1 << 31) - 1)
-
-
-def next_start(texels):
-    """The first texel from number `texels` on at which records may begin: one whose number float32 holds."""
-    return texels if texels < EXACT else -(-texels // DATA_WIDTH) * DATA_WIDTH
-
-
-def data_texture(texels):
-    """A data texture of zeros, float32 (height, width, 4), for at least one texel, in rows of the fixed width."""
-    width = min(max(texels, 1), DATA_WIDTH)
-    return np.zeros((-(-max(texels, 1) // width), width, 4), np.float32)
-
-
-def records_of(texture, record, first=0):
-    """A view of a data texture as an array (n,) of all records that it has room for from texel `first` on."""
-    texels = texture.reshape(-1, 4)[first:]
-    count = len(texels) // record.texels
-    return texels[: count * record.texels].reshape(-1).view(record.dtype)
 
 
 def shared(record):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import layout
+from . import layout, reference
 from .primitives import BY_KIND
 
 #: Most primitives in a leaf.
@@ -49,6 +49,6 @@ def features(plan, in_grids):
 def places_outside(plan, bases):
     """Members of the uniform block that say where the primitives lie that stand outside of the trees; `bases` (K,):
     index of the first record of each kind of the world's shapes."""
-    low, high = layout.split_index(bases)
+    low, high = reference.split_index(bases)
     rows = np.stack([low, high, np.where(plan.outside, plan.counts[0], 0)], axis=1)
     return {f"outside_{cls.kind}": row for cls, row in zip(BY_KIND, rows, strict=True)}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import layout
+from . import data_texture
 from .timing import timed
 
 #: Texels that are uploaded at once where time is short: 4 MiB.
@@ -57,7 +57,7 @@ class NewTextures:
         """Put something where a program asks for what the scene has nothing of."""
         for name in names:
             if name not in self.textures:
-                self._place(name, self.device.texture(layout.data_texture(1)), 1)
+                self._place(name, self.device.texture(data_texture.zeros(1)), 1)
 
     def leave_out(self, name):
         self.textures.pop(name, None)
@@ -75,8 +75,8 @@ class NewTextures:
     def _grow(self, name, room):
         """A copy with room for so many texels and, where more than before is needed, some to spare."""
         if room > self.rooms[name]:
-            most = layout.most_texels(self.device.max_texture_size)
-            room = max(room, min(-(-int(room * _SPARE) // layout.DATA_WIDTH) * layout.DATA_WIDTH, most))
+            most = data_texture.most_texels(self.device.max_texture_size)
+            room = max(room, min(-(-int(room * _SPARE) // data_texture.WIDTH) * data_texture.WIDTH, most))
         with timed(self.update.seconds, "upload"):
             self._place(name, self.device.grown(self.textures[name], room), room)
 

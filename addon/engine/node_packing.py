@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import bvh, layout
+from . import bvh, reference
 from .threads import each_piece, pieces
 
 #: How much larger boxes are stored than they are, relative to the largest of their coordinates: what the intersection
@@ -26,22 +26,22 @@ def move_nodes(records, offset):
     for rows in pieces(len(records)):
         piece = records[rows]
         for child in (0, 1):
-            _, count, high = layout.unpack_leaf(piece[f"leaf_{child}"])
+            _, count, high = reference.unpack_leaf(piece[f"leaf_{child}"])
             inner = count == 0
-            low, high = layout.split_index(
-                piece[f"first_{child}"].astype(np.int64) + (high << layout.LOW_BITS) + offset
+            low, high = reference.split_index(
+                piece[f"first_{child}"].astype(np.int64) + (high << reference.LOW_BITS) + offset
             )
             piece[f"first_{child}"][inner] = low[inner]
-            piece[f"leaf_{child}"][inner] = layout.pack_leaf(0, 0, high)[inner]
+            piece[f"leaf_{child}"][inner] = reference.pack_leaf(0, 0, high)[inner]
 
 
 def _write_nodes(records, tree, rows, node_start, primitive_starts, kinds):
     child, count, label = tree.child[rows], tree.count[rows], np.maximum(tree.label[rows], 0)
     is_leaf, empty = count > 0, (count == 0) & (child < 0)
-    low, high = layout.split_index(
+    low, high = reference.split_index(
         np.where(is_leaf, child + primitive_starts[label], np.maximum(child, 0) + node_start)
     )
-    leaf = layout.pack_leaf(np.where(is_leaf, kinds[label], 0), count, high)
+    leaf = reference.pack_leaf(np.where(is_leaf, kinds[label], 0), count, high)
     boxes = tree.boxes[rows].astype(np.float64)
     padding = np.abs(boxes).max(axis=(2, 3))[:, :, None] * _BOX_PADDING + _BOX_PADDING_ABSOLUTE
     lower = np.maximum(boxes[:, :, 0] - padding, -bvh.FAR)

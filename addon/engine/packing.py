@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import instance_packing, layout, leaves, table_packing
+from . import data_texture, instance_packing, layout, leaves, reference, table_packing
 from .attribute_packing import AttributeWriter
 from .changes import Change
 from .errors import SceneError, StoppedError
@@ -44,7 +44,7 @@ def pack(scene, max_texture_size, before=None, *, keep=False, quick=False, stopp
     """
     if scene.camera is None:
         raise SceneError("the scene has no camera; add one")
-    seconds, limit = {}, layout.most_texels(max_texture_size)
+    seconds, limit = {}, data_texture.most_texels(max_texture_size)
     with timed(seconds, "build"):
         try:
             packed = _Packer(scene, limit, before, keep, quick, stopped).pack()
@@ -115,7 +115,7 @@ class _Packer:
         planes = self._tables(trees, attributes)
         self._drop_what_went(written, stand)
         root = self._root(trees)
-        low, high = layout.split_index(root)
+        low, high = reference.split_index(root)
         self.frame |= {
             **self.lights.frame,
             **leaves.places_outside(self.plan, trees.bases[0]),
@@ -278,14 +278,14 @@ class _Packer:
             residency.instances = self._new_instances(trees, attributes) if plan.placed else None
         there = residency.instances
         if there:
-            first = there.first * layout.DATA_WIDTH
+            first = there.first * data_texture.WIDTH
             self.frame |= {"instance_first": first, "instance_surface_first": plan.instance_surface_first(first)}
 
     def _take_rows(self):
         """(First, number) of rows of the texture of instances."""
         arena, texels = self.residency.arenas["row"], self.plan.instance_texels(0)
-        near = arena.end * layout.DATA_WIDTH + texels < layout.EXACT
-        rows = -(-self.plan.instance_texels(0 if near else layout.EXACT) // layout.DATA_WIDTH)
+        near = arena.end * data_texture.WIDTH + texels < data_texture.EXACT
+        rows = -(-self.plan.instance_texels(0 if near else data_texture.EXACT) // data_texture.WIDTH)
         return arena.take(rows), rows
 
     def _new_instances(self, trees, attributes):
@@ -301,11 +301,11 @@ class _Packer:
         top, kept = instance_packing.upper_tree(instances, bounds, before if like_before else None, quick=self.quick)
         quick = (there.quick if kept is before else self.quick) and plan.leaves >= QUICK_FROM
         first, rows = self._instance_rows
-        start = first * layout.DATA_WIDTH
+        start = first * data_texture.WIDTH
         count = plan.instance_texels(start)
-        texture = layout.data_texture(count)
-        hits = layout.records_of(texture, layout.INSTANCE)[: plan.leaves]
-        surfaces = layout.records_of(texture, layout.INSTANCE_SURFACE, plan.instance_surface_first(start) - start)
+        texture = data_texture.zeros(count)
+        hits = data_texture.records_of(texture, layout.INSTANCE)[: plan.leaves]
+        surfaces = data_texture.records_of(texture, layout.INSTANCE_SURFACE, plan.instance_surface_first(start) - start)
         instance_packing.write_records(hits, surfaces, instances, top.order, roots)
         instance_packing.write_attributes(attributes, placed, top.order)
         self.uploads["instances"] = Upload(start, texture, count)

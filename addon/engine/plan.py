@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from . import layout
+from . import data_texture, layout, reference
 from .errors import SceneError
 from .material_packing import attribute_names
 from .primitives import BY_KIND, invertible
@@ -92,7 +92,7 @@ class Plan:
 
     def instance_surface_first(self, first):
         """Where the second records of the instances begin if the first ones do at texel `first`."""
-        return layout.next_start(first + self.leaves * layout.INSTANCE.texels)
+        return data_texture.next_start(first + self.leaves * layout.INSTANCE.texels)
 
     def instance_texels(self, first):
         """Texels of the instances from texel `first` on."""
@@ -116,7 +116,7 @@ class Plan:
         """Raise SceneError where a texture would need more than `limit` texels: what, how many, what to do."""
         for cls, count in zip(BY_KIND, self.counts.sum(axis=0).tolist(), strict=True):
             for record in (cls.record, cls.surface_record):
-                most = min(limit, record.texels << layout.INDEX_BITS)
+                most = min(limit, record.texels << reference.INDEX_BITS)
                 check_texels(count * record.texels, most, f"{count} {cls.kind}s")
         check_texels(self.instance_texels(0), limit, f"{self.leaves} instances")
         values = sum(self.attributes.texels.values())
@@ -187,8 +187,8 @@ class AttributePlan:
         for name, *place in self.texels:
             start[self.number(name), *place] = first[name, *place]
         directory = layout.ATTRIBUTE.zeros(start.size)
-        directory["first"], directory["first_high"] = layout.split_index(start.ravel())
-        directory["base"], directory["base_high"] = layout.split_index(np.where(self.width, base, 0).ravel())
+        directory["first"], directory["first_high"] = reference.split_index(start.ravel())
+        directory["base"], directory["base_high"] = reference.split_index(np.where(self.width, base, 0).ravel())
         directory["width"] = self.width.ravel()
         return directory
 

@@ -1,6 +1,6 @@
 """The GLSL of the records of `layout`: structs, the functions that read them from data textures, the uniform block."""
 
-from . import layout
+from . import data_texture, layout, reference
 
 
 def struct(record):
@@ -51,7 +51,7 @@ def uniforms():
 
 def fetch(texture):
     """GLSL function `fetch_<texture>(texel)` over `texel_<texture>(place)`, which devices define."""
-    place = f"ivec2(texel & {layout.DATA_WIDTH - 1}, texel >> {layout.DATA_WIDTH_BITS})"
+    place = f"ivec2(texel & {data_texture.WIDTH - 1}, texel >> {data_texture.WIDTH_BITS})"
     return f"vec4 fetch_{texture}(int texel) {{\n  return texel_{texture}({place});\n}}\n"
 
 
@@ -62,18 +62,18 @@ def constants():
     takes graphics processors as long or longer, and LLVM 22, which Mesa's software rasteriser compiles with, makes it
     of six instructions for each pixel.
     """
-    leaf_mask = (1 << 32 - layout.INDEX_BITS) - 1
+    leaf_mask = (1 << 32 - reference.INDEX_BITS) - 1
     kinds = "".join(f"#define KIND_{kind.upper()} {number}\n" for number, kind in enumerate(layout.KINDS))
     return (
         f"{kinds}"
         f"#define KIND_COUNT {len(layout.KINDS)}\n"
         f"#define KIND_GRID {layout.GRID_KIND}\n"
         "#define WHOLE(x) (floatBitsToInt((x) + 8388608.0) & 0x7fffff)\n"
-        f"#define REFERENCE(first, leaf) ((first) + ((leaf) << {layout.LOW_BITS}))\n"
-        f"#define REFERENCE_INDEX(reference) ((reference) & {(1 << layout.INDEX_BITS) - 1})\n"
-        f"#define REFERENCE_IS_INNER(reference) (((reference) >> {layout.INDEX_BITS}) == 0)\n"
-        f"#define LEAF_OF(reference) ((((reference) >> {layout.INDEX_BITS}) & {leaf_mask}) - 1)\n"
-        f"#define LEAF_KIND(leaf) ((leaf) >> {layout.COUNT_BITS})\n"
-        f"#define LEAF_COUNT(leaf) (((leaf) & {layout.MAX_LEAF_SIZE - 1}) + 1)\n"
-        f"#define JOIN_INDEX(low, high) ((low) + ((high) << {layout.LOW_BITS}))\n"
+        f"#define REFERENCE(first, leaf) ((first) + ((leaf) << {reference.LOW_BITS}))\n"
+        f"#define REFERENCE_INDEX(reference) ((reference) & {(1 << reference.INDEX_BITS) - 1})\n"
+        f"#define REFERENCE_IS_INNER(reference) (((reference) >> {reference.INDEX_BITS}) == 0)\n"
+        f"#define LEAF_OF(reference) ((((reference) >> {reference.INDEX_BITS}) & {leaf_mask}) - 1)\n"
+        f"#define LEAF_KIND(leaf) ((leaf) >> {reference.COUNT_BITS})\n"
+        f"#define LEAF_COUNT(leaf) (((leaf) & {reference.MAX_LEAF_SIZE - 1}) + 1)\n"
+        f"#define JOIN_INDEX(low, high) ((low) + ((high) << {reference.LOW_BITS}))\n"
     )

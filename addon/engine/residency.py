@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import bvh, layout
+from . import bvh, data_texture, layout, reference
 from .arena import Arena
 from .primitives import BY_KIND
 
@@ -30,9 +30,9 @@ class BuiltTree:
 
     @property
     def reference(self):
-        """What leads there, to be split by `layout.split_index`."""
-        leaf = int(layout.pack_leaf(layout.GRID_KIND, 1, 0)) if self.is_grid else 0
-        return self.root + (leaf << layout.LOW_BITS)
+        """What leads there, to be split by `reference.split_index`."""
+        leaf = int(reference.pack_leaf(layout.GRID_KIND, 1, 0)) if self.is_grid else 0
+        return self.root + (leaf << reference.LOW_BITS)
 
 
 @dataclass(frozen=True)
@@ -174,10 +174,10 @@ class Residency:
         ends = {name: arena.end for name, arena in self.arenas.items()}
         texels = {cls.kind: max(cls.record.texels, cls.surface_record.texels) for cls in BY_KIND}
         texels |= {"node": layout.NODE.texels}
-        if any(ends[name] > 1 << layout.INDEX_BITS for name in texels):
+        if any(ends[name] > 1 << reference.INDEX_BITS for name in texels):
             return False
-        texels |= {"row": layout.DATA_WIDTH}
-        return all(end * texels.get(name, 1) <= max(limit, layout.DATA_WIDTH) for name, end in ends.items())
+        texels |= {"row": data_texture.WIDTH}
+        return all(end * texels.get(name, 1) <= max(limit, data_texture.WIDTH) for name, end in ends.items())
 
 
 def is_same(references, things):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import layout
+from . import data_texture
 from .plan import check_texels
 from .residency import Upload
 
@@ -12,11 +12,11 @@ def lay_out(records, limit):
     they are more than `limit` texels."""
     slices, end = {}, 0
     for name, array in records.items():
-        first = layout.next_start(end)
+        first = data_texture.next_start(end)
         end = first + array.nbytes // 16
         slices[name] = slice(first, end)
     check_texels(end, limit, "materials, lights, planes and images")
-    texture = layout.data_texture(end)
+    texture = data_texture.zeros(end)
     for name, array in records.items():
         texture.reshape(-1, 4)[slices[name]] = array.view(np.float32).reshape(-1, 4)
     return slices, Upload(0, texture, end, anew=True)

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import bvh, grid_packing, layout, leaves
+from . import bvh, data_texture, grid_packing, layout, leaves
 from .batches import batches, joined
 from .errors import SceneError
 from .node_packing import move_nodes, write_nodes
@@ -55,7 +55,7 @@ class TreePacker:
             first, count = residency.arenas[cls.kind].take(int(counts.sum())), int(counts.sum())
             self.bases[numbers, label] = first + np.cumsum(counts) - counts
             for record in (cls.record, cls.surface_record) if count else ():
-                texels = layout.data_texture(count * record.texels)
+                texels = data_texture.zeros(count * record.texels)
                 self.uploads[record.texture] = Upload(first * record.texels, texels, count * record.texels)
         self._nodes, self._top_nodes, self._node_count, self.node_first = [], top_nodes, top_nodes, 0
 
@@ -281,7 +281,7 @@ class TreePacker:
         found = []
         for record in (part.record, part.surface_record):
             upload = self.uploads[record.texture]
-            found.append(layout.records_of(upload.texels, record)[base - upload.first // record.texels :])
+            found.append(data_texture.records_of(upload.texels, record)[base - upload.first // record.texels :])
         return found
 
     def _add_nodes(self, number, tree):
@@ -294,8 +294,8 @@ class TreePacker:
 
     def _new_nodes(self, count, are_tree=True):
         """Records of further nodes that are to be uploaded, or the room of so many."""
-        self._nodes.append((layout.data_texture(count * layout.NODE.texels), count, are_tree))
-        return layout.records_of(self._nodes[-1][0], layout.NODE)[:count]
+        self._nodes.append((data_texture.zeros(count * layout.NODE.texels), count, are_tree))
+        return data_texture.records_of(self._nodes[-1][0], layout.NODE)[:count]
 
     def settle(self):
         """Find the place of all nodes, now that their number is known; `Resident`s by number of what was added."""
@@ -303,7 +303,7 @@ class TreePacker:
         if self.node_first:
             for texture, count, are_tree in self._nodes:
                 if are_tree:
-                    move_nodes(layout.records_of(texture, layout.NODE)[:count], self.node_first)
+                    move_nodes(data_texture.records_of(texture, layout.NODE)[:count], self.node_first)
             for number, resident in self._added.items():
                 resident.tree = replace(resident.tree, root=resident.tree.root + self.node_first)
                 self.trees[number] = resident.tree
@@ -323,11 +323,11 @@ class TreePacker:
         if len(self._nodes) == 1:
             texture, *_ = self._nodes.pop()
         else:
-            texture, start = layout.data_texture(max(self._node_count, 1) * layout.NODE.texels), 0
-            nodes = layout.records_of(texture, layout.NODE)
+            texture, start = data_texture.zeros(max(self._node_count, 1) * layout.NODE.texels), 0
+            nodes = data_texture.records_of(texture, layout.NODE)
             while self._nodes:
                 part, count, _ = self._nodes.pop(0)
-                nodes[start : start + count] = layout.records_of(part, layout.NODE)[:count]
+                nodes[start : start + count] = data_texture.records_of(part, layout.NODE)[:count]
                 start += count
         texels = layout.NODE.texels
         self.uploads["nodes"] = Upload(self.node_first * texels, texture, self._node_count * texels)

@@ -2,12 +2,12 @@
 
 from enum import IntFlag
 
-from . import layout
+from . import reference
 
 _FIRST_GROUP = 7
 
 #: Groups of objects that lights can be linked to: as many bits as a record's integers have beside the others.
-GROUPS = layout.LOW_BITS - _FIRST_GROUP
+GROUPS = reference.LOW_BITS - _FIRST_GROUP
 
 
 class Visibility(IntFlag):

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import layout, shader_source
+from . import data_texture, layout, shader_source
 from .expression import constant_of
 from .material_packing import image_numbers
 from .node_programs import constant_texels
@@ -45,7 +45,7 @@ class WorldLight:
         brightness = _with_rims(brightness)
         brightness = (brightness / max(brightness.mean(dtype=np.float64), 1e-300)).astype(np.float32)
         tree = _tree(brightness)
-        texture = layout.data_texture(len(tree))
+        texture = data_texture.zeros(len(tree))
         texture.reshape(-1, 4)[: len(tree)] = tree
         frame = irradiance(_reduced(radiance)) | {
             "world_light_levels": len(radiance).bit_length() - 1,

@@ -8,10 +8,21 @@ import numpy as np
 import pytest
 
 from addon.device import WindowDevice
-from addon.engine import Camera, Geometry, Instances, Light, LoadedScene, Material, Scene, Session, Settings, Spheres
+from addon.engine import (
+    Camera,
+    Geometry,
+    Instances,
+    Light,
+    LoadedScene,
+    Material,
+    Scene,
+    Session,
+    Settings,
+    Spheres,
+    data_texture,
+)
 from addon.engine.devices import blender_gpu
 from addon.engine.devices.blender_gpu import BlenderDevice
-from addon.engine.layout import DATA_WIDTH
 from addon.engine.shader_source import ProgramSource
 
 
@@ -35,22 +46,22 @@ def texels_of(texture):
 
 def test_any_range_is_written_and_nothing_else(device):
     rng = np.random.default_rng(0)
-    texture = device.texture(rng.random((3, DATA_WIDTH, 4)).astype(np.float32))
+    texture = device.texture(rng.random((3, data_texture.WIDTH, 4)).astype(np.float32))
     host = texels_of(texture).copy()
     for _ in range(30):
-        first = int(rng.integers(3 * DATA_WIDTH))
-        texels = rng.normal(size=(rng.integers(1, 3 * DATA_WIDTH - first + 1), 4)).astype(np.float32)
+        first = int(rng.integers(3 * data_texture.WIDTH))
+        texels = rng.normal(size=(rng.integers(1, 3 * data_texture.WIDTH - first + 1), 4)).astype(np.float32)
         device.update(texture, first, texels)
         host[first : first + len(texels)] = texels
         assert np.array_equal(texels_of(texture), host)
 
 
-@pytest.mark.parametrize("texels", [100, DATA_WIDTH, 2 * DATA_WIDTH])
+@pytest.mark.parametrize("texels", [100, data_texture.WIDTH, 2 * data_texture.WIDTH])
 def test_what_has_grown_begins_as_before(device, texels):
     rng = np.random.default_rng(0)
-    shape = (-(-texels // DATA_WIDTH), min(texels, DATA_WIDTH), 4)
+    shape = (-(-texels // data_texture.WIDTH), min(texels, data_texture.WIDTH), 4)
     old = device.texture(rng.random(shape).astype(np.float32))
-    new = device.grown(old, 3 * DATA_WIDTH)
+    new = device.grown(old, 3 * data_texture.WIDTH)
     assert np.array_equal(texels_of(new)[:texels], texels_of(old))
     small = device.grown(None, 50)
     values = rng.random((20, 4)).astype(np.float32)

@@ -26,7 +26,7 @@ from addon.engine import (
     Spheres,
     Triangles,
     World,
-    layout,
+    data_texture,
     packing,
     tree_packing,
 )
@@ -441,7 +441,7 @@ def test_an_update_that_is_dropped_half_way_leaves_what_is_there(loaded, before)
 
 
 def test_where_there_is_no_room_beside_what_lies_there_all_is_laid_out_anew(loaded, monkeypatch):
-    monkeypatch.setattr(layout, "most_texels", lambda size: 2 * layout.DATA_WIDTH)
+    monkeypatch.setattr(data_texture, "most_texels", lambda size: 2 * data_texture.WIDTH)
     scenes = []
     for seed in range(2):
         places = np.random.default_rng(seed).uniform(-4, 4, (900, 3))

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from addon.engine import layout, shader_source
-from addon.engine.layout import Field, Record
+from addon.engine import data_texture, layout, shader_source
+from addon.engine.record import Field, Record
 from addon.engine.scene import Visibility
 
 FOLDERS = (Path(__file__).resolve().parent / "glsl", shader_source.SHADER_FOLDER)
@@ -36,12 +36,12 @@ TEST_VALUE = Record("test_value", "test_values", (Field("a", "vec4", ""), Field(
 
 
 def texels(*arrays):
-    """Structured arrays one after the other as a data texture (height, DATA_WIDTH, 4) float32."""
+    """Structured arrays one after the other as a data texture (height, data_texture.WIDTH, 4) float32."""
     rows = np.concatenate([np.ascontiguousarray(a).view(np.float32).reshape(-1, 4) for a in arrays])
-    height = max(-(-len(rows) // layout.DATA_WIDTH), 1)
-    padded = np.zeros((height * layout.DATA_WIDTH, 4), np.float32)
+    height = max(-(-len(rows) // data_texture.WIDTH), 1)
+    padded = np.zeros((height * data_texture.WIDTH, 4), np.float32)
     padded[: len(rows)] = rows
-    return padded.reshape(height, layout.DATA_WIDTH, 4)
+    return padded.reshape(height, data_texture.WIDTH, 4)
 
 
 def frame_record(**values):

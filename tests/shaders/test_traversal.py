@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from addon.engine import layout
+from addon.engine import layout, reference
 from addon.engine.packing import pack
 from addon.engine.primitives import Cylinders, Discs, Spheres, Triangles
 from addon.engine.scene import Geometry, Instances, Visibility
@@ -341,13 +341,13 @@ def test_surfaces_of_instances(device, seed):
 def test_references_survive_the_gpu(device):
     """Indices past 2^23, kinds and counts as numpy packs them and as GLSL takes them apart."""
     rng = np.random.default_rng(0)
-    last = 2**layout.INDEX_BITS - 1
+    last = 2**reference.INDEX_BITS - 1
     index = np.concatenate([[0, 1, 2**23 - 1, 2**23, 2**23 + 1, last], rng.integers(0, last, 5000, endpoint=True)])
     kind = rng.integers(0, layout.KINDS.index("instance"), len(index), endpoint=True)
-    count = rng.integers(1, layout.MAX_LEAF_SIZE, len(index), endpoint=True)
-    low, high = layout.split_index(index)
-    leaf = layout.pack_leaf(kind, count, high)
-    inner = layout.pack_leaf(0, 0, high)
+    count = rng.integers(1, reference.MAX_LEAF_SIZE, len(index), endpoint=True)
+    low, high = reference.split_index(index)
+    leaf = reference.pack_leaf(kind, count, high)
+    inner = reference.pack_leaf(0, 0, high)
     color, root = harness.run_values(
         device, "index_frag.glsl", low, leaf, low, inner, outputs=("out_color", "out_root")
     )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.engine import layout
+from addon.engine import data_texture, layout
 from addon.engine.material import surface_attribute
 from addon.engine.packing import pack
 from addon.engine.primitives import Cylinders, Planes, Spheres, Triangles
@@ -26,7 +26,7 @@ def spheres(count, name=None, seed=0):
 
 def looked_up(packed, attribute, geometry, kind, index):
     """The texels (width, 4) of primitive `index` among the records of its kind; None where it has no such attribute."""
-    directory = layout.records_of(packed.textures["tables"], layout.ATTRIBUTE, packed.frame["attribute_first"])
+    directory = data_texture.records_of(packed.textures["tables"], layout.ATTRIBUTE, packed.frame["attribute_first"])
     kinds, rows = len(layout.KINDS), packed.frame["geometry_count"] + 1
     entry = directory[(attribute * rows + geometry) * kinds + layout.KINDS.index(kind)]
     first, base = (int(entry[n]) + (int(entry[f"{n}_high"]) << 24) for n in ("first", "base"))
@@ -42,7 +42,7 @@ def test_each_primitive_finds_its_value():
     with_, without = Geometry(spheres(70, "size", 1)), Geometry(spheres(30, None, 2))
     scene.instances = [Instances(with_, np.eye(4)), Instances(without, np.eye(4))]
     packed = pack(scene, LIMIT)
-    radius = layout.records_of(packed.textures["spheres"], layout.SPHERE)["radius"]
+    radius = data_texture.records_of(packed.textures["spheres"], layout.SPHERE)["radius"]
     for index in range(150):
         geometry = 0 if index < 50 else 1 if index < 120 else 2
         found = looked_up(packed, 0, geometry, "sphere", index)
@@ -60,7 +60,7 @@ def test_attributes_of_many_small_geometries():
     geometries = [Geometry(spheres(n, "size" if i % 3 else None, i)) for i, n in enumerate(counts.tolist())]
     scene.instances = [Instances(geometry, np.eye(4)) for geometry in geometries]
     packed = pack(scene, LIMIT)
-    radius = layout.records_of(packed.textures["spheres"], layout.SPHERE)["radius"]
+    radius = data_texture.records_of(packed.textures["spheres"], layout.SPHERE)["radius"]
     index = 0
     for number, count in enumerate(counts.tolist()):
         for _ in range(count):
@@ -78,8 +78,8 @@ def test_values_at_corners_and_ends():
     scene.add(Triangles(**{f"p{i}": corners[:, i] for i in range(3)}, attributes={"place": colors}))
     scene.add(Cylinders(base=corners[:, 0], apex=corners[:, 1], radius=0.1, attributes={"place": colors[:, :2]}))
     packed = pack(scene, LIMIT)
-    triangle = layout.records_of(packed.textures["triangles"], layout.TRIANGLE)
-    cylinder = layout.records_of(packed.textures["cylinders"], layout.CYLINDER)
+    triangle = data_texture.records_of(packed.textures["triangles"], layout.TRIANGLE)
+    cylinder = data_texture.records_of(packed.textures["cylinders"], layout.CYLINDER)
     for index in range(40):
         found = looked_up(packed, 0, 0, "triangle", index)
         assert (found[:, :3] == [triangle[f"p{i}"][index] for i in range(3)]).all()
@@ -104,8 +104,10 @@ def test_each_instance_finds_its_value(shapes):
     ]
     packed = pack(scene, LIMIT)
     count = 30 + shapes
-    x = layout.records_of(packed.textures["instances"], layout.INSTANCE_SURFACE, packed.frame["instance_surface_first"])
-    number = layout.records_of(packed.textures["instances"], layout.INSTANCE)["geometry"]
+    x = data_texture.records_of(
+        packed.textures["instances"], layout.INSTANCE_SURFACE, packed.frame["instance_surface_first"]
+    )
+    number = data_texture.records_of(packed.textures["instances"], layout.INSTANCE)["geometry"]
     for index in range(count):
         place = x["to_world_x"][index][3]
         row = int(np.flatnonzero(matrices[:, 0, 3] == place)[0])
@@ -132,5 +134,5 @@ def test_only_what_materials_name_is_uploaded():
     scene.add(part)
     packed = pack(scene, LIMIT)
     assert packed.textures["attributes"].size == 20 * 4
-    constants = layout.records_of(packed.textures["tables"], layout.CONSTANT, int(packed.frame["constant_first"]))
+    constants = data_texture.records_of(packed.textures["tables"], layout.CONSTANT, int(packed.frame["constant_first"]))
     assert constants["value"][:2, :2].tolist() == [[1.0, 0.0], [1.0, 0.0]]  # the second has both, reflect before glow

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from addon.engine import layout
+from addon.engine import data_texture, layout, reference
 from addon.engine.errors import SceneError
 from addon.engine.instance_packing import affine_inverse, moved_boxes
 from addon.engine.packing import pack
@@ -35,7 +35,9 @@ def matrices_of(count, seed=0):
 
 
 def records(packed, record, count):
-    return layout.records_of(packed.textures[record.texture], record, packed.frame[f"{record.name}_first"])[:count]
+    return data_texture.records_of(packed.textures[record.texture], record, packed.frame[f"{record.name}_first"])[
+        :count
+    ]
 
 
 def placed(packed, count):
@@ -106,7 +108,7 @@ def test_the_world_s_shapes_among_instances_are_moved_with_the_origin():
     scene.instances = [Instances(scene.shapes, matrix)]
     packed = pack(scene, LIMIT)
     there, _ = placed(packed, 2)
-    center = layout.records_of(packed.textures["spheres"], layout.SPHERE)["center"][0].astype(np.float64)
+    center = data_texture.records_of(packed.textures["spheres"], layout.SPHERE)["center"][0].astype(np.float64)
     at = there[:, :, :3] @ center + there[:, :, 3] + packed.origin
     assert np.abs(at - 1e6).max() < 1.0, "both the world and its stretched copy are about that point"
 
@@ -181,9 +183,11 @@ def test_a_hundred_thousand_are_all_there():
     there, _ = placed(packed, count)
     expected = matrices_of(count)[:, :3].astype(np.float32)
     assert (np.sort(there[:, 0, 3]) == np.sort(expected[:, 0, 3])).all()
-    nodes = layout.records_of(packed.textures["nodes"], layout.NODE)[: count - 1]
+    nodes = data_texture.records_of(packed.textures["nodes"], layout.NODE)[: count - 1]
     kind = layout.KINDS.index("instance")
-    leaves = np.concatenate([nodes[f"first_{c}"][nodes[f"leaf_{c}"] == layout.pack_leaf(kind, 1, 0)] for c in (0, 1)])
+    leaves = np.concatenate(
+        [nodes[f"first_{c}"][nodes[f"leaf_{c}"] == reference.pack_leaf(kind, 1, 0)] for c in (0, 1)]
+    )
     assert (np.sort(leaves.astype(int)) == np.arange(count)).all()
 
 

@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from addon.engine import layout, record_glsl
-from addon.engine.layout import Field, Record
+from addon.engine import layout, record_glsl, reference
+from addon.engine.record import Field, Record
 
 each_record = pytest.mark.parametrize("record", layout.RECORDS, ids=lambda record: record.name)
 
@@ -72,7 +72,7 @@ def test_no_name_is_given_twice():
         assert len(set(names)) == len(names), record.name
 
 
-INDEX_HIGH_BITS = layout.INDEX_BITS - layout.LOW_BITS
+INDEX_HIGH_BITS = reference.INDEX_BITS - reference.LOW_BITS
 
 
 def test_a_field_across_two_texels_is_refused():
@@ -84,7 +84,7 @@ def test_a_field_across_two_texels_is_refused():
 
 @pytest.mark.parametrize("index", [0, 1, 2**23 - 1, 2**23, 2**23 + 1, 2**24, 2**31 - 1, 2**40 - 1])
 def test_indices_survive_float32(index):
-    low, high = layout.split_index(index)
+    low, high = reference.split_index(index)
     stored = np.float32([low, high])
     assert (stored == [low, high]).all() and low < 2**23, "exact in float32, and with 2^23 more"
     assert int(stored[0]) + (int(stored[1]) << 23) == index
@@ -93,22 +93,27 @@ def test_indices_survive_float32(index):
 def test_references_survive_float32():
     last = layout.KINDS.index("instance")
     kind, count, high = (
-        a.ravel() for a in np.meshgrid(range(last + 1), range(1, layout.MAX_LEAF_SIZE + 1), range(1 << INDEX_HIGH_BITS))
+        a.ravel()
+        for a in np.meshgrid(range(last + 1), range(1, reference.MAX_LEAF_SIZE + 1), range(1 << INDEX_HIGH_BITS))
     )
-    inner = layout.pack_leaf(0, 0, np.arange(1 << INDEX_HIGH_BITS))
-    leaf = np.concatenate([layout.pack_leaf(kind, count, high), inner])
-    assert len(np.unique(leaf)) == len(leaf) and 0 <= leaf.min() and leaf.max() < 2 ** (32 - layout.LOW_BITS)
+    inner = reference.pack_leaf(0, 0, np.arange(1 << INDEX_HIGH_BITS))
+    leaf = np.concatenate([reference.pack_leaf(kind, count, high), inner])
+    assert len(np.unique(leaf)) == len(leaf) and 0 <= leaf.min() and leaf.max() < 2 ** (32 - reference.LOW_BITS)
     stored = leaf.astype(np.float32)
     assert (stored == leaf).all()
     with pytest.raises(ValueError, match="26 bits"):
-        layout.pack_leaf(0, 1, [0, 1 << INDEX_HIGH_BITS])
-    for found, given in zip(layout.unpack_leaf(stored[: len(kind)]), (kind, count, high), strict=True):
+        reference.pack_leaf(0, 1, [0, 1 << INDEX_HIGH_BITS])
+    for found, given in zip(reference.unpack_leaf(stored[: len(kind)]), (kind, count, high), strict=True):
         assert np.array_equal(found, given)
-    assert (layout.unpack_leaf(inner)[1] == 0).all() and np.array_equal(layout.unpack_leaf(inner)[2], range(len(inner)))
+    assert (reference.unpack_leaf(inner)[1] == 0).all() and np.array_equal(
+        reference.unpack_leaf(inner)[2], range(len(inner))
+    )
 
 
 def test_a_kind_s_number_is_its_label():
     from addon.engine.primitives import BY_KIND
 
     assert [cls.kind for cls in BY_KIND] == list(layout.KINDS[: len(BY_KIND)])
-    assert layout.pack_leaf(layout.KINDS.index("instance"), layout.MAX_LEAF_SIZE, 0) < 2 ** (32 - layout.LOW_BITS)
+    assert reference.pack_leaf(layout.KINDS.index("instance"), reference.MAX_LEAF_SIZE, 0) < 2 ** (
+        32 - reference.LOW_BITS
+    )

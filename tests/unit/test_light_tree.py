@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from addon.engine import Camera, Light, Material, Scene, layout
+from addon.engine import Camera, Light, Material, Scene, layout, reference
 from addon.engine.expression import call, component
 from addon.engine.light_packing import lamp_bounds
 from addon.engine.light_tree import ALL_SIDES, build_light_tree, merged_cones
@@ -197,6 +197,6 @@ def test_groups():
     assert {"HAS_LIGHT_LINKING", "HAS_VISIBILITY"} <= made.features
     light = table(made, "light", 1)[0]
     assert int(light["blockers"]) == last and int(light["receivers"]) == Visibility.group(0)
-    assert last * 2 <= 1 << layout.LOW_BITS, "the integers of records hold them all"
+    assert last * 2 <= 1 << reference.LOW_BITS, "the integers of records hold them all"
     with pytest.raises(ValueError, match=f"there are {GROUPS} groups, no number {GROUPS}"):
         Visibility.group(GROUPS)

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from addon.engine import bvh, image_packing, layout
+from addon.engine import bvh, data_texture, image_packing, layout, reference
 from addon.engine.errors import SceneError
 from addon.engine.material import surface_attribute
 from addon.engine.packing import pack
@@ -23,7 +23,7 @@ def nothing_is_built(monkeypatch):
         raise AssertionError("built or allocated before the limits were checked")
 
     monkeypatch.setattr(bvh, "build", refuse)
-    monkeypatch.setattr(layout, "data_texture", refuse)
+    monkeypatch.setattr(data_texture, "zeros", refuse)
     monkeypatch.setattr(image_packing, "pack_images", refuse)
 
 
@@ -93,13 +93,14 @@ def test_a_billion_is_refused_at_once(nothing_is_built):
 
 
 def test_numbers_of_texels_fit_the_integers_of_the_shader():
-    assert layout.most_texels(16384) == 4096 * 16384
-    assert layout.most_texels(1 << 30) == (1 << 31) - 1, "GLSL's int, whatever the device says"
-    assert layout.most_texels(16384) // layout.NODE.texels < 1 << layout.INDEX_BITS, "every node has a reference"
+    assert data_texture.most_texels(16384) == 4096 * 16384
+    assert data_texture.most_texels(1 << 30) == (1 << 31) - 1, "GLSL's int, whatever the device says"
+    nodes = data_texture.most_texels(16384) // layout.NODE.texels
+    assert nodes < 1 << reference.INDEX_BITS, "every node has a reference"
 
 
 def test_what_references_cannot_count_is_refused(nothing_is_built):
-    many = spheres(1).take(np.broadcast_to(np.zeros(1, int), 2**layout.INDEX_BITS + 1))
+    many = spheres(1).take(np.broadcast_to(np.zeros(1, int), 2**reference.INDEX_BITS + 1))
     with pytest.raises(SceneError, match=f"67108865 spheres need 67108865 texels, a texture here holds {2**26}"):
         pack(scene_of(many), 1 << 20)
 
@@ -107,8 +108,8 @@ def test_what_references_cannot_count_is_refused(nothing_is_built):
 @pytest.mark.parametrize("texels", [0, 1, 2**24 - 1, 2**24, 2**24 + 1, 50_000_001, 2**31 - 4097])
 def test_records_begin_where_the_frame_can_say(texels):
     """The frame's floats hold whole numbers up to 2^24 only, and those of whole rows beyond."""
-    start = layout.next_start(texels)
-    assert texels <= start < texels + layout.DATA_WIDTH and int(np.float32(start)) == start
+    start = data_texture.next_start(texels)
+    assert texels <= start < texels + data_texture.WIDTH and int(np.float32(start)) == start
     assert start == texels or texels >= 2**24, "not a texel lost where few are used"
 
 
@@ -133,7 +134,7 @@ def test_images_are_reduced_rather_than_refused():
 def test_what_was_changed_often_is_packed_anew_before_references_run_out(name):
     """Arenas hold what was there before beside what comes: their ends count, not the number of shapes."""
     residency = Residency()
-    most = 1 << layout.INDEX_BITS
+    most = 1 << reference.INDEX_BITS
     residency.arenas[name].end = most
     assert residency.fits(1 << 31)
     residency.arenas[name].end = most + 1

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from addon.engine import bvh, layout
+from addon.engine import bvh, data_texture, layout, reference
 from addon.engine.changes import Change
 from addon.engine.errors import SceneError, StoppedError
 from addon.engine.material import surface_image
@@ -43,7 +43,7 @@ def leaves(packed):
     for root in todo:
         for kind, first, count in leaves_below(packed, root):
             if kind == "instance":
-                roots = layout.records_of(instances, layout.INSTANCE)["root"][first : first + count].astype(int)
+                roots = data_texture.records_of(instances, layout.INSTANCE)["root"][first : first + count].astype(int)
                 todo += [root for root in roots.tolist() if root not in todo]
             else:
                 found.append((kind, first, count))
@@ -52,15 +52,15 @@ def leaves(packed):
 
 def leaves_below(packed, root):
     """(kind, first, count) of every leaf of the tree that begins at a node."""
-    nodes = layout.records_of(packed.textures["nodes"], layout.NODE)
+    nodes = data_texture.records_of(packed.textures["nodes"], layout.NODE)
     todo, seen = [root], set()
     while todo:
         index = todo.pop()
         assert index not in seen, "a node is reached twice"
         seen.add(index)
         for child in (0, 1):
-            kind, count, high = map(int, layout.unpack_leaf(nodes[f"leaf_{child}"][index]))
-            first = int(nodes[f"first_{child}"][index]) + (high << layout.LOW_BITS)
+            kind, count, high = map(int, reference.unpack_leaf(nodes[f"leaf_{child}"][index]))
+            first = int(nodes[f"first_{child}"][index]) + (high << reference.LOW_BITS)
             if count:
                 yield layout.KINDS[kind], first, count
             elif nodes[f"lower_{child}"][index][0] < 1e38:
@@ -89,13 +89,13 @@ def test_trees_that_are_built_together_lead_to_their_own_primitives(eye):
     twice = np.stack([np.eye(4)] * 2)
     scene.instances = [Instances(geometry, np.eye(4) if i % 2 else twice) for i, geometry in enumerate(geometries)]
     packed = pack(scene, LIMIT, keep=True)
-    hits = layout.records_of(packed.textures["instances"], layout.INSTANCE)[:600]
+    hits = data_texture.records_of(packed.textures["instances"], layout.INSTANCE)[:600]
     point = {
         "sphere": (layout.SPHERE, "center"),
         "triangle": (layout.TRIANGLE, "p0"),
         "cylinder": (layout.CYLINDER, "base"),
     }
-    point = {kind: layout.records_of(packed.textures[r.texture], r)[name] for kind, (r, name) in point.items()}
+    point = {kind: data_texture.records_of(packed.textures[r.texture], r)[name] for kind, (r, name) in point.items()}
     for number, geometry in enumerate(geometries):
         (root,) = set(hits["root"][hits["geometry"] == number + 1].astype(int).tolist())
         seen = dict.fromkeys(geometry.counts(), 0)
@@ -149,8 +149,8 @@ def test_a_quick_tree_has_every_primitive_where_its_leaf_says():
     assert np.allclose(np.sort(center + packed.origin, axis=0), np.sort(balls.center, axis=0), atol=0.5)
     radius, covered = records(packed, layout.SPHERE, QUICK_FROM)["radius"], np.zeros(QUICK_FROM, int)
     for child in (0, 1):
-        kind, count, high = layout.unpack_leaf(nodes[f"leaf_{child}"])
-        first = nodes[f"first_{child}"].astype(np.int64) + (high << layout.LOW_BITS)
+        kind, count, high = reference.unpack_leaf(nodes[f"leaf_{child}"])
+        first = nodes[f"first_{child}"].astype(np.int64) + (high << reference.LOW_BITS)
         leaf = np.flatnonzero((count > 0) & (kind == layout.KINDS.index("sphere")))
         rows = np.concatenate([np.arange(f, f + n) for f, n in zip(first[leaf], count[leaf], strict=True)])
         of = np.repeat(leaf, count[leaf])

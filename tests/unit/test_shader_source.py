@@ -5,8 +5,8 @@ import re
 import pytest
 
 from addon.engine import layout, shader_source
-from addon.engine.layout import Field, Record
 from addon.engine.node_programs import NodePrograms
+from addon.engine.record import Field, Record
 from addon.engine.shader_source import FEATURES, SHADER_FOLDER, ShaderSourceError, program
 
 KINDS = [f"HAS_{kind.upper()}" for kind in layout.KINDS if kind != "instance"]

@@ -10,9 +10,9 @@ from functools import cache
 
 import numpy as np
 
+from .. import data_texture
 from ..errors import DeviceError
 from ..glsl_functions import SHADER_FOLDER
-from ..layout import DATA_WIDTH, data_texture
 from .base import (
     FULL_SCREEN_TRIANGLE,
     GROUP_SIZE,
@@ -99,7 +99,7 @@ class BlenderDevice:
             raise DeviceError(f"no memory for a texture of {width} x {height}: {error}") from error
 
     def grown(self, texture, texels):
-        width = min(texels, DATA_WIDTH)
+        width = min(texels, data_texture.WIDTH)
         height = -(-texels // width)
         try:
             new = self._gpu.types.GPUTexture((width, height), format="RGBA32F")
@@ -111,7 +111,7 @@ class BlenderDevice:
 
     def update(self, texture, first, texels):
         # There is no other way to change a part of a texture than to draw it.
-        padded = data_texture(len(texels))
+        padded = data_texture.zeros(len(texels))
         padded.reshape(-1, 4)[: len(texels)] = texels
         self._copy(self.texture(padded), texture, first, len(texels))
 

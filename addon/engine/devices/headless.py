@@ -8,8 +8,8 @@ import re
 
 import numpy as np
 
+from .. import data_texture
 from ..errors import DeviceError
-from ..layout import DATA_WIDTH
 from .base import (
     FULL_SCREEN_TRIANGLE,
     GROUP_SIZE,
@@ -121,7 +121,7 @@ class HeadlessDevice:
 
     @_in_context
     def grown(self, texture, texels):
-        width = min(texels, DATA_WIDTH)
+        width = min(texels, data_texture.WIDTH)
         height = -(-texels // width)
         new = self._empty_texture(width, height)
         if texture is not None:
