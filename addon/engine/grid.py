@@ -11,12 +11,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .threads import each_piece, pieces
+
 #: Cells for each shape. Between 2 and 8 the time hardly changes, the memory does.
 DENSITY = 4.0
+#: Beyond so many no grid is made, those around it included: of a line's cells most would be around it.
+MOST_CELLS = 16
+#: Likewise cells that a shape is in, and cells that its box is in; of these about the least share is of the former.
+MOST_ITEMS = 12
+_MOST_PAIRS = 24
+_LEAST_SHARE = 0.3
 #: How far beyond its surface a shape is found, in cells: a ray's steps are rounded by less.
 PADDING = 1.0 / 64.0
-#: Pairs of a shape and a cell of its box, for each shape, beyond which no grid is made.
-MOST_PAIRS = 32
 #: Turns in search of the nearest points of a segment and a cell.
 _TURNS = 5
 #: A step from a cell to the next, in units of a tree's node.
@@ -41,71 +47,103 @@ class Grid:
     first: np.ndarray
     items: np.ndarray
 
-    def cost(self, intersection_cost: float) -> float:
+    def cost(self, test_cost: float) -> float:
         """What `bvh.sah_cost` is of a tree: a line through the box meets a cell as likely as their surfaces say."""
-        x, y, z = self.size
-        width, depth, height = self.size * self.resolution
-        share = (x * y + z * (x + y)) / (width * depth + height * (width + depth))
-        return float(share * (STEP_COST * self.resolution.prod() + intersection_cost * len(self.items)))
+        return _cost(self.size, self.resolution, len(self.items), test_cost)
 
 
-def build(base: np.ndarray, axis: np.ndarray, radius: np.ndarray) -> Grid | None:
+def build(base: np.ndarray, axis: np.ndarray, radius: np.ndarray, test_cost: float, most_cost: float) -> Grid | None:
     """The grid over n > 0 capsules: (n, 3) their ends and the way to the other ends, 0 for spheres; (n,) radii of any
-    sign.
+    sign. `test_cost`: of testing one of them, in units of a tree's node.
 
-    None where their sizes differ so much that cells would be crowded.
+    None where it would cost more than `most_cost` or take much memory: where sizes differ so much that cells would be
+    crowded, or on a line.
     """
-    base, axis, radius = (np.asarray(values, np.float64) for values in (base, axis, np.abs(radius)))
-    lower = np.minimum(base, base + axis) - radius[:, None]
-    upper = np.maximum(base, base + axis) + radius[:, None]
-    start, extent = lower.min(axis=0), np.ptp(np.concatenate([lower, upper]), axis=0)
-    cell = np.cbrt(extent.prod() / (DENSITY * len(base)))
-    resolution = np.maximum(np.rint(extent / cell), 1.0).astype(np.int64) if cell > 0.0 else np.ones(3, np.int64)
+    base, axis = (np.ascontiguousarray(np.asarray(values, np.float64).T) for values in (base, axis))
+    radius = np.abs(np.asarray(radius, np.float64))
+    lower, upper = np.minimum(base, base + axis) - radius, np.maximum(base, base + axis) + radius
+    start, extent = lower.min(axis=1), upper.max(axis=1) - lower.min(axis=1)
+    if not (extent > 0.0).all():  # so far from the origin that radii are lost
+        return None
+    resolution = _resolution(extent, DENSITY * len(radius))
     size = extent * (1.0 + 2.0 * PADDING / resolution) / resolution
     start = start - 0.5 * (size * resolution - extent)
-    low = _cells(lower - PADDING * size, start, size, resolution)
-    spans = _cells(upper + PADDING * size, start, size, resolution) - low + 1
-    if spans.prod(axis=1).sum() > MOST_PAIRS * len(base):
+    low, high = (
+        np.clip((corners - start[:, None]) / size[:, None], 0, resolution[:, None] - 1).astype(np.int32)
+        for corners in (lower - PADDING * size[:, None], upper + PADDING * size[:, None])
+    )
+    spans = high - low + 1
+    pairs = spans.prod(axis=0, dtype=np.int64).sum()
+    is_large = (resolution + 2).prod() > MOST_CELLS * len(radius) or pairs > _MOST_PAIRS * len(radius)
+    if is_large or _cost(size, resolution, _LEAST_SHARE * pairs, test_cost) > most_cost:
         return None
-    shape, place = _pairs(low, spans)
-    reaches = _reaches(base[shape], axis[shape], radius[shape] + PADDING * size.max(), start + place * size, size)
-    shape, place = shape[reaches], place[reaches]
-    number = place[:, 0] + resolution[0] * (place[:, 1] + resolution[1] * place[:, 2])
-    first = np.concatenate([[0], np.cumsum(np.bincount(number, minlength=resolution.prod()))])
-    return Grid(start, size, resolution, first, shape[np.argsort(number, kind="stable")])
+
+    def items(rows):
+        return _items(base[:, rows], axis[:, rows], radius[rows], low[:, rows], spans[:, rows], start, size, resolution)
+
+    found = each_piece(items, len(radius))
+    cell = np.concatenate([cells for cells, _ in found])
+    shape = np.concatenate([shapes + rows.start for (_, shapes), rows in zip(found, pieces(len(radius)), strict=True)])
+    if len(cell) > MOST_ITEMS * len(radius) or _cost(size, resolution, len(cell), test_cost) > most_cost:
+        return None
+    first = np.concatenate([[0], np.cumsum(np.bincount(cell, minlength=resolution.prod()))])
+    return Grid(start, size, resolution, first, shape[np.argsort(cell, kind="stable")])
 
 
-def _cells(points, start, size, resolution):
-    """(n, 3) int64: the cells that points are in."""
-    return np.clip(np.floor((points - start) / size), 0, resolution - 1).astype(np.int64)
+def _cost(size, resolution, items, test_cost):
+    (x, y, z), (width, depth, height) = size, size * resolution
+    share = (x * y + z * (x + y)) / (width * depth + height * (width + depth))
+    return float(share * (STEP_COST * resolution.prod() + test_cost * items))
 
 
-def _pairs(low, spans):
-    """(m,) number of a shape and (m, 3) cell, for all cells of each shape's box of `spans` (n, 3) cells from `low`."""
-    counts = spans.prod(axis=1)
-    shape = np.repeat(np.arange(len(low)), counts)
-    rest = np.arange(len(shape)) - np.repeat(np.cumsum(counts) - counts, counts)
-    place, span = np.empty((len(shape), 3), np.int64), spans[shape]
-    rest, place[:, 0] = np.divmod(rest, span[:, 0])
-    place[:, 2], place[:, 1] = np.divmod(rest, span[:, 1])
-    return shape, place + low[shape]
+def _resolution(extent, cells):
+    """(3,) int64: cells of like length along each axis, about `cells` in all; what is flat has one."""
+    resolution, axes = np.ones(3), np.ones(3, bool)
+    while axes.any():
+        resolution[axes] = extent[axes] * (cells / extent[axes].prod()) ** (1.0 / axes.sum())
+        if (resolution >= 1.0).all():
+            break
+        axes &= resolution > 1.0
+        resolution[~axes] = 1.0
+    return np.rint(resolution).astype(np.int64)
 
 
-def _reaches(base, axis, radius, corner, size):
+def _items(base, axis, radius, low, spans, start, size, resolution):
+    """(m,) int32 cells and (m,) int32 shapes, for each cell that a capsule reaches; what it is given in columns."""
+    counts = spans.prod(axis=0)
+    shape = np.repeat(np.arange(len(radius), dtype=np.int32), counts)
+    rest = np.arange(len(shape), dtype=np.int32) - np.repeat(np.cumsum(counts, dtype=np.int32) - counts, counts)
+    place = np.empty((3, len(shape)), np.int32)
+    rest, place[0] = np.divmod(rest, spans[0, shape])
+    place[2], place[1] = np.divmod(rest, spans[1, shape])
+    place += low[:, shape]
+    center = start[:, None] + size[:, None] * (place + 0.5)
+    padded = radius[shape] + PADDING * size.max()
+    reaches = _reaches(base[:, shape], axis[:, shape], padded, center, 0.5 * size[:, None])
+    x, y, z = place[:, reaches]
+    return x + int(resolution[0]) * (y + int(resolution[1]) * z), shape[reaches]
+
+
+def _reaches(base, axis, radius, center, half):
     """(m,) bool: whether capsules come into cells. A few that miss one by little count, too.
 
     Nearest points of a segment and a cell are found by going to and fro between both. A capsule misses a cell when a
     plane across the line between them lies between both: that holds for any line, the nearer the better.
     """
-    squared = np.einsum("ij,ij->i", axis, axis)
+    squared = _dot(axis, axis)
+    if not squared.any():
+        return _dot(*2 * [np.maximum(np.abs(base - center) - half, 0.0)]) <= radius * radius
     per_squared = 1.0 / np.where(squared > 0.0, squared, np.inf)
-    center = corner + 0.5 * size
-    point = center
+    offset = base - center  # positions relative to the middle of the cell
+    point = np.zeros_like(offset)
     for _ in range(_TURNS):
-        along = np.clip(np.einsum("ij,ij->i", point - base, axis) * per_squared, 0.0, 1.0)
-        middle = base + along[:, None] * axis
-        point = np.clip(middle, corner, corner + size)
+        along = np.clip(_dot(point - offset, axis) * per_squared, 0.0, 1.0)
+        middle = offset + along * axis
+        point = np.clip(middle, -half, half)
     away = middle - point
-    apart = np.minimum(np.einsum("ij,ij->i", away, base - center), np.einsum("ij,ij->i", away, base + axis - center))
-    apart -= 0.5 * np.abs(away) @ size
-    return apart <= radius * np.sqrt(np.einsum("ij,ij->i", away, away))
+    apart = _dot(away, offset) + np.minimum(_dot(away, axis), 0.0) - _dot(np.abs(away), half)
+    return apart <= radius * np.sqrt(_dot(away, away))
+
+
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -6,30 +6,36 @@ from . import data_texture, grid, layout, reference
 from .leaves import INTERSECTION_COST, MANY
 
 _SPHERE, _CYLINDER = (layout.KINDS.index(kind) for kind in ("sphere", "cylinder"))
-#: Share of a tree's cost up to which a grid takes its place: at 0.8 both take the same time.
-_WORTH = 0.7
+#: Share of a quickly built tree's cost up to which a grid takes the place of a good one: at 0.7 both take as long.
+_WORTH = 0.6
 #: Indices that an item can refer to.
 _MOST = 1 << reference.LOW_BITS - 1
 
 
-def better_grid(hits, bases, tree_cost):
-    """The `grid.Grid` of a geometry where rays are through it sooner than through its tree of this cost, else None.
+def may_have_grid(parts):
+    """Whether there can be a grid of primitives, `parts` by kind number."""
+    return parts.keys() <= {_SPHERE, _CYLINDER} and sum(map(len, parts.values())) < MANY
 
-    `hits`: arrays of its primitives' first records, by kind number; `bases`: index of the first of each kind.
+
+def better_grid(hits, bases, tree_cost):
+    """The `grid.Grid` of a geometry that may have one, where rays are through it sooner than through its tree; or None.
+
+    `hits`: arrays of its primitives' first records, by kind number; `bases`: index of the first of each kind;
+    `tree_cost`: of a tree that was built quickly.
     """
-    count = sum(map(len, hits.values()))
-    if not hits.keys() <= {_SPHERE, _CYLINDER} or count >= MANY:
-        return None
     if any(bases[kind] + len(records) > _MOST for kind, records in hits.items()):
         return None
     base, axis, height, radius = _capsules(hits)
-    made = grid.build(base, height[:, None] * axis, radius)
-    return made if made and cost(made, hits) < _WORTH * tree_cost else None
+    return grid.build(base, height[:, None] * axis, radius, _test_cost(hits), _WORTH * tree_cost)
 
 
 def cost(made, hits):
     """The cost of a `grid.Grid`, to be compared with that of a tree."""
-    return made.cost(max(INTERSECTION_COST[kind] for kind in hits))
+    return made.cost(_test_cost(hits))
+
+
+def _test_cost(hits):
+    return float(max(INTERSECTION_COST[kind] for kind in hits))
 
 
 def room(made):

@@ -49,7 +49,7 @@ def pack(scene, max_texture_size, before=None, *, keep=False, quick=False, stopp
         try:
             packed = _Packer(scene, limit, before, keep, quick, stopped).pack()
         except _NoRoomError:
-            packed = _Packer(scene, limit, None, keep, quick, stopped).pack()
+            packed = _Packer(scene, limit, None, keep, quick, stopped, grids=False).pack()
             packed.change |= Change.ALL_TEXTURES
             for upload in packed.uploads.values():
                 upload.anew = True
@@ -65,7 +65,7 @@ def _bounds_of(top, trees):
 
 
 class _NoRoomError(Exception):
-    """There is room for a scene, but not beside what lies there already."""
+    """There is room for a scene, but not beside what lies there already or with grids."""
 
 
 class _Packer:
@@ -74,10 +74,10 @@ class _Packer:
     `before`: the `Residency` that the scene before left behind, None where there is nothing.
     """
 
-    def __init__(self, scene, limit, before, keep, quick, stopped):
+    def __init__(self, scene, limit, before, keep, quick, stopped, grids=True):
         self._stopped = stopped or (lambda: False)
         self.scene, self.limit, self.before = scene, limit, before or Residency()
-        self.keep, self.quick = keep, quick
+        self.keep, self.quick, self.grids = keep, quick, grids
         self.numbers, self.there_is_more = self.before.numbers, before is not None
         self.plan = make_plan(scene, self.numbers)
         self.plan.check(limit)
@@ -93,7 +93,8 @@ class _Packer:
         written = self._geometries_to_write()
         stand = not written.size and self._instances_stand()
         top_nodes = 0 if stand else plan.top_nodes
-        trees = TreePacker(plan, written, residency, self.origin, top_nodes=top_nodes, keep=self.keep, quick=self.quick)
+        options = {"keep": self.keep, "quick": self.quick, "grids": self.grids}
+        trees = TreePacker(plan, written, residency, self.origin, top_nodes=top_nodes, **options)
         keys = self._attributes_to_write(written, stand)
         attributes = AttributeWriter(plan.attributes, keys, residency.arenas["attribute"])
         if plan.placed and not stand:
@@ -155,7 +156,8 @@ class _Packer:
             raise StoppedError("packing was stopped")
 
     def _check_room(self):
-        if self.there_is_more and not self.residency.fits(self.limit):
+        has_grids = any(resident.tree.is_grid for resident in self.residency.geometries.values())
+        if (self.there_is_more or has_grids) and not self.residency.fits(self.limit):
             raise _NoRoomError
 
     # What is there already

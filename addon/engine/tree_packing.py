@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import bvh, data_texture, grid_packing, layout, leaves
+from . import bvh, data_texture, grid_packing, layout, leaves, part_boxes
 from .batches import batches, joined
 from .errors import SceneError
 from .node_packing import move_nodes, write_nodes
@@ -23,10 +23,8 @@ from .timing import timed
 QUICK_FROM = 1 << 14
 #: A refitted tree that costs so much more than a built one is built.
 WORN = 1.3
-
-
-#: Grids take about three times as much memory as trees: there are none in scenes of more primitives.
-_MOST_IN_GRIDS = 1 << 20
+#: Grids take some hundred bytes a primitive: there are none in scenes of more.
+_MOST_IN_GRIDS = 1 << 19
 
 
 class TreePacker:
@@ -35,11 +33,12 @@ class TreePacker:
 
     `uploads`: of the records, those of the nodes come with `finish`. `bases` (G, K): index of the first record of each
     kind, by number. `trees`: `BuiltTree`s by number. `seconds`: by stage. `refitted`: how many trees were not built.
-    `keep`: whether trees are kept for refits. `quick`: whether large trees are built quickly, for slower rays.
+    `keep`: whether trees are kept for refits. `quick`: whether large trees are built quickly, for slower rays. `grids`:
+    whether these may take the place of trees.
     """
 
-    def __init__(self, plan, numbers, residency, origin, *, top_nodes, keep, quick=False):
-        self.plan, self.residency, self.keep, self.quick = plan, residency, keep, quick
+    def __init__(self, plan, numbers, residency, origin, *, top_nodes, keep, quick=False, grids=True):
+        self.plan, self.residency, self.keep, self.quick, self.grids = plan, residency, keep, quick, grids
         self.seconds, self.trees, self.uploads, self.refitted = {}, {}, {}, 0
         self._added = {}
         self._move = Similarity(np.eye(3), 1.0, -origin) if origin.any() else None
@@ -77,43 +76,58 @@ class TreePacker:
     def _add_large(self, number, attributes, replaced):
         parts, outside = self.plan.parts(number)
         move = self._move if self.plan.in_world[number] else None
-        tree, quick = None, False
-        if replaced is not None:
-            tree, kept, cost = self._refitted(number, parts, move, replaced.kept)
-            quick = replaced.quick
-        if tree is None:
-            good = self._good_tree(number)
-            quick = self.quick and good is None and self.plan.counts[number].sum() >= QUICK_FROM
-            if quick:
-                tree, kept, cost = self._built_quickly(number, parts, move)
-            if tree is None:
-                quick = False
-                tree, kept, cost = self._built(number, parts, move, good)
+        grid, kept, quick = None, None, False
+        if self._may_have_grid(parts):
+            tree, _, cost = self._built_quickly(number, parts, move)
+            if tree is not None:
+                grid = self._better_grid(number, parts, cost)
+        if grid is None:
+            tree, kept, cost, quick = self._tree(number, parts, move, replaced)
         with timed(self.seconds, "records"):
             for label, part, order in rows_by_kind(tree, parts):
                 attributes.write((number, label), part, order)
             bounds = self._add_outside(number, outside, tree.bounds, move, attributes)
-        with timed(self.seconds, "grid"):
-            built = self._add_grid(number, parts, bounds, cost)
-        if built is None:
-            with timed(self.seconds, "records"):
+            if grid is not None:
+                built = self._add_grid(number, parts, grid, bounds)
+            else:
                 built = BuiltTree(bounds, self._add_nodes(number, tree), len(tree), tree.depth, cost)
         self._added_one(number, built, attributes, kept, quick)
 
-    def _add_grid(self, number, parts, bounds, tree_cost):
-        """Write a grid in place of a geometry's tree; its `BuiltTree`, None where the tree is better or is kept: what
-        moves takes its tree along."""
-        if self.keep or self.plan.counts.sum() > _MOST_IN_GRIDS:
-            return None
-        hits = {label: self._records(number, label, part)[0][: len(part)] for label, part in parts.items()}
-        made = grid_packing.better_grid(hits, self.bases[number], tree_cost)
-        if made is None:
-            return None
-        root, nodes = self._node_count, grid_packing.room(made)
+    def _tree(self, number, parts, move, replaced):
+        """Refit or build a tree and write the records of its primitives; (tree, what is kept of it, its cost or 0,
+        whether it is a quick one)."""
+        if replaced is not None:
+            tree, kept, cost = self._refitted(number, parts, move, replaced.kept)
+            if tree is not None:
+                return tree, kept, cost, replaced.quick
+        good = self._good_tree(number)
+        if self.quick and good is None and self.plan.counts[number].sum() >= QUICK_FROM:
+            tree, kept, cost = self._built_quickly(number, parts, move)
+            if tree is not None:
+                return tree, kept, cost, True
+        return *self._built(number, parts, move, good), False
+
+    def _may_have_grid(self, parts):
+        """Whether a grid may take the place of a geometry's tree; not where trees are kept: what moves takes its tree
+        along."""
+        small = self.plan.counts.sum() <= _MOST_IN_GRIDS
+        return self.grids and small and not self.keep and grid_packing.may_have_grid(parts)
+
+    def _hits(self, number, parts):
+        """First records of a geometry's primitives, by kind number."""
+        return {label: self._records(number, label, part)[0][: len(part)] for label, part in parts.items()}
+
+    def _better_grid(self, number, parts, tree_cost):
+        with timed(self.seconds, "tree"):
+            return grid_packing.better_grid(self._hits(number, parts), self.bases[number], tree_cost)
+
+    def _add_grid(self, number, parts, grid, bounds):
+        """Write the records of a grid; its `BuiltTree`."""
+        root, nodes, hits = self._node_count, grid_packing.room(grid), self._hits(number, parts)
         records = self._new_nodes(nodes, are_tree=False)
-        grid_packing.write_grid(records.view(np.float32).reshape(-1, 4), made, hits, self.bases[number])
+        grid_packing.write_grid(records.view(np.float32).reshape(-1, 4), grid, hits, self.bases[number])
         self._node_count += nodes
-        return BuiltTree(bounds, root, nodes, 0, grid_packing.cost(made, hits), is_grid=True)
+        return BuiltTree(bounds, root, nodes, 0, grid_packing.cost(grid, hits), is_grid=True)
 
     def _add_outside(self, number, parts, bounds, move, attributes):
         """Write the records of what stands outside of a geometry's tree with these `bounds`; the bounds of all."""
@@ -121,7 +135,7 @@ class TreePacker:
             order = np.arange(len(part))
             self._write_records(number, label, part, order, move)
             attributes.write((number, label), part, order)
-            lower, upper = _bounds([part], move)
+            lower, upper = part_boxes.bounds([part], move)
             bounds = np.stack([np.minimum(bounds[0], lower.min(axis=0)), np.maximum(bounds[1], upper.max(axis=0))])
         return bounds
 
@@ -149,7 +163,7 @@ class TreePacker:
             lower, upper = np.empty((counts.sum(), 3), np.float32), np.empty((counts.sum(), 3), np.float32)
             labels = np.empty(len(lower), np.int32)
             for label, part in parts.items():
-                lower[rows[label]], upper[rows[label]] = _bounds([part], move)
+                lower[rows[label]], upper[rows[label]] = part_boxes.bounds([part], move)
                 labels[rows[label]] = label
         with timed(self.seconds, "tree"):
             forest = self._forest(numbers, lower, upper, labels, counts)
@@ -214,19 +228,19 @@ class TreePacker:
     def _built_anew(self, number, parts, move):
         counts = self.plan.counts_in_trees[number]
         with timed(self.seconds, "bounds"):
-            lower, upper = _bounds(parts.values(), move)
+            lower, upper = part_boxes.bounds(parts.values(), move)
         with timed(self.seconds, "tree"), _naming(self.plan.geometries[number].name):
             options = {"leaf_size": leaves.sizes(counts), "intersection_cost": leaves.costs(counts)}
-            return bvh.build(lower, upper, _labels(parts), **options)
+            return bvh.build(lower, upper, part_boxes.labels(parts), **options)
 
     def _built_quickly(self, number, parts, move):
         """As `_built`, a tree that is made in a fraction of the time; none where a box is not finite."""
         with timed(self.seconds, "bounds"):
-            spans = _spans(parts.values(), move)
+            spans = part_boxes.spans(parts.values(), move)
             if not np.isfinite(spans).all():
                 return None, None, 0.0  # building says what is wrong
         with timed(self.seconds, "tree"):
-            quick = bvh.QuickTree(spans, _labels(parts), leaves.sizes(self.plan.counts_in_trees[number]))
+            quick = bvh.QuickTree(spans, part_boxes.labels(parts), leaves.sizes(self.plan.counts_in_trees[number]))
             del spans
             spans, form = both(lambda: self._write_in_order(number, parts, move, quick), quick.form)
             tree = form.around(spans)
@@ -245,9 +259,9 @@ class TreePacker:
         hits, surfaces = self._records(number, label, part)
 
         def write(rows):
-            piece = _moved(part.take(order[rows]), move)
+            piece = part_boxes.moved(part.take(order[rows]), move)
             if spans is not None:
-                _fill_spans(piece, spans[:, rows])
+                part_boxes.fill_spans(piece, spans[:, rows])
             _copy_records(piece.records(), hits[rows], surfaces[rows])
 
         each_piece(write, len(order))
@@ -359,50 +373,3 @@ def _copy_records(records, *targets):
     """Copy arrays of records to others (n,) as floats, which is faster than field by field."""
     for record, target in zip(records, targets, strict=True):
         target.view(np.float32)[:] = record.view(np.float32)
-
-
-def _labels(parts):
-    """(n,) int32 kind numbers of the primitives of all `parts`, by kind number."""
-    return np.repeat(np.array(list(parts), np.int32), [len(part) for part in parts.values()])
-
-
-def _moved(primitives, move):
-    return primitives.transformed(move) if move else primitives
-
-
-def _each_moved(parts, move, write):
-    """Call `write(piece, rows)` for all primitives of several kinds, moved, a piece at a time; `rows`: a slice, which
-    of all they are."""
-    start = 0
-    for part in parts:
-
-        def write_piece(rows, part=part, start=start):
-            write(_moved(part.take(rows), move), slice(start + rows.start, start + rows.stop))
-
-        each_piece(write_piece, len(part))
-        start += len(part)
-
-
-def _bounds(parts, move):
-    """Boxes of all rows of several kinds: lower and upper (n, 3) float32, rounded outwards."""
-    lower, upper = np.empty((2, sum(map(len, parts)), 3), np.float32)
-
-    def write(piece, rows):
-        lower[rows], upper[rows] = bvh.rounded_outward(*piece.bounds())
-
-    _each_moved(parts, move, write)
-    return lower, upper
-
-
-def _spans(parts, move):
-    """(6, n) float32 spans of these boxes, as `bvh.Form` takes them."""
-    spans = np.empty((6, sum(map(len, parts))), np.float32)
-    _each_moved(parts, move, lambda piece, rows: _fill_spans(piece, spans[:, rows]))
-    return spans
-
-
-def _fill_spans(piece, spans):
-    """Write the `spans` (6, n) of the boxes of primitives."""
-    lower, upper = bvh.rounded_outward(*piece.bounds())
-    np.negative(lower.T, out=spans[:3])
-    spans[3:] = upper.T

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from addon.engine import grid_packing, layout
+from addon.engine import grid, grid_packing, layout, reference
+from addon.engine.leaves import MANY
 from addon.engine.packing import pack
 from addon.engine.primitives import Cylinders, Spheres, Triangles
 from addon.engine.scene import Geometry, Instances
@@ -141,13 +142,28 @@ def test_a_crowd_with_triangles_and_one_that_will_move_have_trees():
     assert "HAS_GRID" not in pack(scene, 16384).features
 
 
+def test_trees_where_grids_have_no_room():
+    scene = scenes.empty_scene()
+    scenes.new_materials(scene, 1)
+    scene.add(*crowd_of(np.random.default_rng(0), "spheres"))
+    assert "HAS_GRID" in pack(scene, 4096).features
+    packed = pack(scene, 16)
+    assert "HAS_GRID" not in packed.features
+    assert packed.textures["nodes"].shape[0] <= 16
+
+
+def test_integers_of_the_largest_grids_have_room():
+    texels = (grid.MOST_CELLS + layout.GRID_ITEM.texels * grid.MOST_ITEMS) * MANY
+    assert texels < 1 << reference.LOW_BITS
+
+
 def test_references_of_items_have_room():
     """Beyond what an item can refer to there are trees."""
     hits = {0: layout.SPHERE.zeros(8)}
     hits[0]["center"], hits[0]["radius"] = np.indices((2, 2, 2)).reshape(3, -1).T, 0.4
     bases = np.zeros(5, np.int64)
-    assert grid_packing.better_grid(hits, bases, 1e9)
+    assert grid_packing.better_grid(hits, bases, 1e9) is not None
     bases[0] = (1 << 22) - 8
-    assert grid_packing.better_grid(hits, bases, 1e9)
+    assert grid_packing.better_grid(hits, bases, 1e9) is not None
     bases[0] += 1
     assert grid_packing.better_grid(hits, bases, 1e9) is None

@@ -12,6 +12,10 @@ from addon.engine.bvh import sah_cost
 each_seed = pytest.mark.parametrize("seed", range(4))
 
 
+def built(base, axis, radius, test_cost=0.5, most_cost=np.inf):
+    return grid.build(base, axis, radius, test_cost, most_cost)
+
+
 def crowd(rng, count, length=0.0, spread=1.0):
     """Capsules of like size, evenly spread: bases, axes, radii."""
     cell = spread * count ** (-1 / 3)
@@ -45,7 +49,7 @@ def is_in(made, cell, shape):
 def test_each_shape_is_in_every_cell_that_it_reaches(seed, length):
     rng = np.random.default_rng(seed)
     shapes = crowd(rng, 700, length)
-    made = grid.build(*shapes)
+    made = built(*shapes)
     points, shape = surface_points(rng, *shapes, 20_000)
     assert is_in(made, cell_of(made, points), shape).all()
 
@@ -55,7 +59,7 @@ def test_a_shape_is_in_cells_a_little_beyond_its_surface_too(seed):
     """Rays' steps are rounded: a hit may be thought to be in the next cell."""
     rng = np.random.default_rng(seed)
     shapes = crowd(rng, 700, 1.0)
-    made = grid.build(*shapes)
+    made = built(*shapes)
     points, shape = surface_points(rng, *shapes, 20_000)
     points += rng.uniform(-0.99, 0.99, points.shape) * grid.PADDING / np.sqrt(3.0) * made.size.min()
     assert is_in(made, cell_of(made, points), shape).all()
@@ -66,7 +70,7 @@ def test_a_shape_is_in_cells_a_little_beyond_its_surface_too(seed):
 def test_few_shapes_are_in_cells_that_they_do_not_reach(seed, length, most):
     rng = np.random.default_rng(seed)
     base, axis, radius = crowd(rng, 300, length)
-    made = grid.build(base, axis, radius)
+    made = built(base, axis, radius)
     cell = np.repeat(np.arange(len(made.first) - 1), np.diff(made.first))
     x, yz = cell % made.resolution[0], cell // made.resolution[0]
     corner = made.lower + made.size * np.stack([x, yz % made.resolution[1], yz // made.resolution[1]], axis=-1)
@@ -86,7 +90,7 @@ def test_no_arrangement_is_too_odd(count, arrangement, seed):
     extent = {"point": (0, 0, 0), "line": (1, 0, 0), "sheet": (1, 1, 0), "heap": (1, 1, 1)}[arrangement]
     base = rng.uniform(-1.0, 1.0, (count, 3)) * extent + rng.uniform(-50.0, 50.0, 3)
     shapes = base, np.zeros((count, 3)), rng.uniform(0.01, 0.3, count)
-    made = grid.build(*shapes)
+    made = built(*shapes)
     if made is None:
         return
     points, shape = surface_points(rng, *shapes, 500)
@@ -95,15 +99,35 @@ def test_no_arrangement_is_too_odd(count, arrangement, seed):
 
 def test_a_radius_that_says_which_side_is_seen_counts_as_its_size():
     base, axis, radius = crowd(np.random.default_rng(0), 200)
-    plain, inside = grid.build(base, axis, radius), grid.build(base, axis, -radius)
+    plain, inside = built(base, axis, radius), built(base, axis, -radius)
     assert np.array_equal(plain.items, inside.items)
     assert np.array_equal(plain.first, inside.first)
 
 
-def test_no_grid_where_large_shapes_would_be_in_most_cells():
+def test_no_grid_where_it_would_take_much_memory():
+    """Large shapes among many small ones, and a line, most of whose cells would lie around it."""
     base, axis, radius = crowd(np.random.default_rng(0), 1000)
-    radius[:200] = 1.0
-    assert grid.build(base, axis, radius) is None
+    large = radius.copy()
+    large[:200] = 1.0
+    assert built(base, axis, large) is None
+    assert built(base * (1, 0, 0), axis, radius * 1e-3) is None
+    assert built(base + 1e20, axis, radius) is None  # no radius is left of them
+
+
+@pytest.mark.parametrize("thickness", [0.0, 1e-6, 1e-3, 0.1, 1.0])
+@pytest.mark.parametrize("size", [1e-6, 1e-3, 0.01])
+def test_flat_crowds_have_as_many_cells_as_others(size, thickness):
+    base, axis, _ = crowd(np.random.default_rng(0), 3000)
+    made = built(base * (1.0, thickness, 1.0), axis, np.full(3000, size))
+    assert 2.0 < made.resolution.prod() / 3000 < 2.0 * grid.DENSITY
+
+
+def test_no_grid_that_costs_more_than_it_may():
+    shapes = crowd(np.random.default_rng(0), 1000)
+    cost = built(*shapes).cost(0.5)
+    assert built(*shapes, most_cost=1.01 * cost)
+    assert built(*shapes, most_cost=0.99 * cost) is None
+    assert built(*shapes, most_cost=0.1 * cost) is None
 
 
 def test_a_grid_costs_less_than_a_tree_where_shapes_crowd_evenly_and_more_where_they_do_not():
@@ -114,6 +138,6 @@ def test_a_grid_costs_less_than_a_tree_where_shapes_crowd_evenly_and_more_where_
     costs = []
     for base, axis, radius in (even, clustered):
         tree = build_tree(base - radius[:, None], base + radius[:, None])
-        costs.append(grid.build(base, axis, radius).cost(0.5) / sah_cost(tree))
+        costs.append(built(base, axis, radius).cost(0.5) / sah_cost(tree))
     assert costs[0] < 0.7
     assert costs[1] > 1.0
