@@ -15,12 +15,14 @@ from .threads import each_piece, pieces
 
 #: Cells for each shape. Between 2 and 8 the time hardly changes, the memory does.
 DENSITY = 4.0
-#: Beyond so many no grid is made, those around it included: of a line's cells most would be around it.
-MOST_CELLS = 16
-#: Likewise cells that a shape is in, and cells that its box is in; of these about the least share is of the former.
+#: Cells along an axis below which no grid is made: through what is flat a tree is as fast.
+LEAST_CELLS = 4
+#: Beyond so many for each shape likewise: cells that it is in, and that its box is in; about the least share of these.
 MOST_ITEMS = 12
 _MOST_PAIRS = 24
 _LEAST_SHARE = 0.3
+#: Items in one cell, likewise: a few of many shapes may be close together, and looked at.
+MOST_IN_CELL = 32
 #: How far beyond its surface a shape is found, in cells: a ray's steps are rounded by less.
 PADDING = 1.0 / 64.0
 #: Turns in search of the nearest points of a segment and a cell.
@@ -56,8 +58,7 @@ def build(base: np.ndarray, axis: np.ndarray, radius: np.ndarray, test_cost: flo
     """The grid over n > 0 capsules: (n, 3) their ends and the way to the other ends, 0 for spheres; (n,) radii of any
     sign. `test_cost`: of testing one of them, in units of a tree's node.
 
-    None where it would cost more than `most_cost` or take much memory: where sizes differ so much that cells would be
-    crowded, or on a line.
+    None where it would cost more than `most_cost`, where cells would be crowded, and of what is flat.
     """
     base, axis = (np.ascontiguousarray(np.asarray(values, np.float64).T) for values in (base, axis))
     radius = np.abs(np.asarray(radius, np.float64))
@@ -65,7 +66,9 @@ def build(base: np.ndarray, axis: np.ndarray, radius: np.ndarray, test_cost: flo
     start, extent = lower.min(axis=1), upper.max(axis=1) - lower.min(axis=1)
     if not (extent > 0.0).all():  # so far from the origin that radii are lost
         return None
-    resolution = _resolution(extent, DENSITY * len(radius))
+    resolution = np.rint(extent * np.cbrt(DENSITY * len(radius) / extent.prod())).astype(np.int64)
+    if resolution.min() < LEAST_CELLS:
+        return None
     size = extent * (1.0 + 2.0 * PADDING / resolution) / resolution
     start = start - 0.5 * (size * resolution - extent)
     low, high = (
@@ -74,8 +77,7 @@ def build(base: np.ndarray, axis: np.ndarray, radius: np.ndarray, test_cost: flo
     )
     spans = high - low + 1
     pairs = spans.prod(axis=0, dtype=np.int64).sum()
-    is_large = (resolution + 2).prod() > MOST_CELLS * len(radius) or pairs > _MOST_PAIRS * len(radius)
-    if is_large or _cost(size, resolution, _LEAST_SHARE * pairs, test_cost) > most_cost:
+    if pairs > _MOST_PAIRS * len(radius) or _cost(size, resolution, _LEAST_SHARE * pairs, test_cost) > most_cost:
         return None
 
     def items(rows):
@@ -86,7 +88,10 @@ def build(base: np.ndarray, axis: np.ndarray, radius: np.ndarray, test_cost: flo
     shape = np.concatenate([shapes + rows.start for (_, shapes), rows in zip(found, pieces(len(radius)), strict=True)])
     if len(cell) > MOST_ITEMS * len(radius) or _cost(size, resolution, len(cell), test_cost) > most_cost:
         return None
-    first = np.concatenate([[0], np.cumsum(np.bincount(cell, minlength=resolution.prod()))])
+    counts = np.bincount(cell, minlength=resolution.prod())
+    if counts.max() > MOST_IN_CELL:
+        return None
+    first = np.concatenate([[0], np.cumsum(counts)])
     return Grid(start, size, resolution, first, shape[np.argsort(cell, kind="stable")])
 
 
@@ -94,18 +99,6 @@ def _cost(size, resolution, items, test_cost):
     (x, y, z), (width, depth, height) = size, size * resolution
     share = (x * y + z * (x + y)) / (width * depth + height * (width + depth))
     return float(share * (STEP_COST * resolution.prod() + test_cost * items))
-
-
-def _resolution(extent, cells):
-    """(3,) int64: cells of like length along each axis, about `cells` in all; what is flat has one."""
-    resolution, axes = np.ones(3), np.ones(3, bool)
-    while axes.any():
-        resolution[axes] = extent[axes] * (cells / extent[axes].prod()) ** (1.0 / axes.sum())
-        if (resolution >= 1.0).all():
-            break
-        axes &= resolution > 1.0
-        resolution[~axes] = 1.0
-    return np.rint(resolution).astype(np.int64)
 
 
 def _items(base, axis, radius, low, spans, start, size, resolution):

@@ -153,17 +153,18 @@ def test_trees_where_grids_have_no_room():
 
 
 def test_integers_of_the_largest_grids_have_room():
-    texels = (grid.MOST_CELLS + layout.GRID_ITEM.texels * grid.MOST_ITEMS) * MANY
+    cells = grid.DENSITY * ((grid.LEAST_CELLS + 2) / (grid.LEAST_CELLS - 0.5)) ** 3
+    texels = (cells + layout.GRID_ITEM.texels * grid.MOST_ITEMS) * MANY
     assert texels < 1 << reference.LOW_BITS
 
 
 def test_references_of_items_have_room():
     """Beyond what an item can refer to there are trees."""
-    hits = {0: layout.SPHERE.zeros(8)}
-    hits[0]["center"], hits[0]["radius"] = np.indices((2, 2, 2)).reshape(3, -1).T, 0.4
+    hits = {0: layout.SPHERE.zeros(64)}
+    hits[0]["center"], hits[0]["radius"] = np.indices((4, 4, 4)).reshape(3, -1).T, 0.4
     bases = np.zeros(5, np.int64)
     assert grid_packing.better_grid(hits, bases, 1e9) is not None
-    bases[0] = (1 << 22) - 8
+    bases[0] = (1 << 22) - 64
     assert grid_packing.better_grid(hits, bases, 1e9) is not None
     bases[0] += 1
     assert grid_packing.better_grid(hits, bases, 1e9) is None

@@ -105,21 +105,31 @@ def test_a_radius_that_says_which_side_is_seen_counts_as_its_size():
 
 
 def test_no_grid_where_it_would_take_much_memory():
-    """Large shapes among many small ones, and a line, most of whose cells would lie around it."""
+    """Large shapes among many small ones, a line, and so far off that no radius is left."""
     base, axis, radius = crowd(np.random.default_rng(0), 1000)
     large = radius.copy()
     large[:200] = 1.0
     assert built(base, axis, large) is None
     assert built(base * (1, 0, 0), axis, radius * 1e-3) is None
-    assert built(base + 1e20, axis, radius) is None  # no radius is left of them
+    assert built(base + 1e20, axis, radius) is None
 
 
-@pytest.mark.parametrize("thickness", [0.0, 1e-6, 1e-3, 0.1, 1.0])
-@pytest.mark.parametrize("size", [1e-6, 1e-3, 0.01])
-def test_flat_crowds_have_as_many_cells_as_others(size, thickness):
+def test_no_grid_where_a_few_are_close_together():
+    """Their cell would take as long as all others, in the cost it hardly counts."""
+    base, axis, radius = crowd(np.random.default_rng(0), 5000)
+    assert built(base, axis, radius) is not None
+    base[:100] *= 0.02
+    assert built(base, axis, 0.1 * radius) is None
+
+
+@pytest.mark.parametrize("thickness", [0.0, 1e-6, 1e-3, 0.01])
+@pytest.mark.parametrize("size", [1e-6, 1e-3])
+def test_flat_crowds_keep_their_tree_and_thin_ones_have_as_many_cells_as_others(size, thickness):
     base, axis, _ = crowd(np.random.default_rng(0), 3000)
-    made = built(base * (1.0, thickness, 1.0), axis, np.full(3000, size))
-    assert 2.0 < made.resolution.prod() / 3000 < 2.0 * grid.DENSITY
+    radius = np.full(3000, size)
+    assert built(base * (1.0, thickness, 1.0), axis, radius) is None
+    made = built(base * (1.0, 0.1 + thickness, 1.0), axis, radius)
+    assert 0.7 < made.resolution.prod() / (3000 * grid.DENSITY) < 1.4
 
 
 def test_no_grid_that_costs_more_than_it_may():
@@ -133,8 +143,8 @@ def test_no_grid_that_costs_more_than_it_may():
 def test_a_grid_costs_less_than_a_tree_where_shapes_crowd_evenly_and_more_where_they_do_not():
     rng = np.random.default_rng(0)
     even = crowd(rng, 5000)
-    middle = rng.uniform(-1.0, 1.0, (20, 3))[rng.integers(0, 20, 5000)]
-    clustered = middle + 0.05 * even[0], even[1], 0.05 * even[2]
+    middle = rng.uniform(-1.0, 1.0, (8, 3))[rng.integers(0, 8, 5000)]
+    clustered = middle + 0.2 * even[0], even[1], 0.2 * even[2]
     costs = []
     for base, axis, radius in (even, clustered):
         tree = build_tree(base - radius[:, None], base + radius[:, None])
