@@ -55,8 +55,7 @@ def measure(name, size, runs, absent):
                 reasons[peer.name] = str(error)
                 continue
             stack.callback(peers[peer.name].close)
-        peers["Conic"].trace()
-        seconds, failures = in_turn({program: peer.trace for program, peer in peers.items()}, runs)
+        seconds, failures = in_turn({program: peer.trace for program, peer in peers.items()}, runs, twice=True)
         pictures = {program: peers[program].picture() for program in seconds}
         rays = peers["Conic"].rays()
         theirs = peers["POV-Ray"].rays() if "POV-Ray" in seconds else None
