@@ -13,8 +13,8 @@ from .tables import Table, digits
 DEPTH = 5
 SCENES = (*scenes.FAMILIES, "balls:6")
 NOTES = (
-    "Seconds are those of tracing as each program reports them: reading, building and compiling apart. Conic traces "
-    "each scene once before it is measured, since Mesa compiles at the first draw.",
+    "Seconds are those of tracing as each program reports them: reading, building and compiling apart. Of each two "
+    "runs the second one counts.",
     "Conic traces in float32, on the GPU or, with Mesa's driver, on the processor's cores.",
     "Equal: eye rays through the middle of each pixel, depth 5 with the eye ray as 1, no cut-off by weight, no shadow "
     "rays towards lights behind a surface. 'differ': the share of pixels that are not Conic's within 2%.",
