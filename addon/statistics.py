@@ -25,9 +25,10 @@ STAGES = {
 @dataclass
 class Statistics:
     """Of one picture. `objects`: how many objects were taken as each kind; `primitives`: how many stand in the picture
-    by kind, an instanced one each time; `geometries`: how many different ones the instances have; `seconds` by stage,
-    `first_picture` and `total` from the very start; `parts`: the seconds of a stage by its parts; `gpu_bytes` by what
-    they hold; `peak_bytes`: most memory that Blender's process ever had, 0 where that is not known."""
+    by kind, an instanced one each time; `geometries`: how many different ones the instances have; `grids`: how many
+    geometries have a grid in place of a tree; `seconds` by stage, `first_picture` and `total` from the very start;
+    `parts`: the seconds of a stage by its parts; `gpu_bytes` by what they hold; `peak_bytes`: most memory that
+    Blender's process ever had, 0 where that is not known."""
 
     source: str  # what made it: Render, Viewport
     device: str = ""
@@ -39,6 +40,7 @@ class Statistics:
     primitives: dict = field(default_factory=dict)
     instances: int = 0
     geometries: int = 0
+    grids: int = 0
     seconds: dict = field(default_factory=dict)
     parts: dict = field(default_factory=dict)
     gpu_bytes: dict = field(default_factory=dict)
@@ -60,7 +62,7 @@ class Statistics:
         self.gpu_bytes = found["textures"] | {"film": found["gpu_bytes"] - sum(found["textures"].values())}
         # Its first picture counts from loading; `reach` counts from reading.
         self.seconds |= {stage: spent for stage, spent in found["seconds"].items() if stage != "first_picture"}
-        self.parts["build"] = found["build"]
+        self.parts["build"], self.grids = found["build"], found["bvh"]["grids"]
         self.peak_bytes = peak_memory()
 
     @property
@@ -130,6 +132,8 @@ def sections(statistics):
     instancing = []
     if statistics.instances:
         instancing = [("Instances", f"{statistics.instances:,}"), ("Geometries", f"{statistics.geometries:,}")]
+    if statistics.grids:
+        shapes.append(("Grids in place of trees", f"{statistics.grids:,}"))
     memory = [("GPU", bytes_text(statistics.gpu_total))]
     memory += [(_part(name), bytes_text(count)) for name, count in _most_first(statistics.gpu_bytes)]
     if statistics.peak_bytes:

@@ -65,6 +65,7 @@ def filled():
         primitives={"sphere": 66430, "triangle": 12},
         instances=1000,
         geometries=7,
+        grids=2,
         seconds={"total": 12.3, "build": 0.2, "read": 0.1, "first_picture": 0.4},
         parts={"read": {"place": 0.022}},
         gpu_bytes={"sphere_surfaces": 3 << 20, "film": 120 << 10},
@@ -82,7 +83,7 @@ def test_log_line():
 def test_sections_of_the_panel():
     sections = dict(statistics.sections(filled()))
     assert sections["Objects"] == [("Instanced", "1,000"), ("Point cloud", "12"), ("Sphere", "3")]
-    assert sections["Primitives"] == [("Spheres", "66,430"), ("Triangles", "12")]
+    assert sections["Primitives"] == [("Spheres", "66,430"), ("Triangles", "12"), ("Grids in place of trees", "2")]
     assert sections["Instancing"] == [("Instances", "1,000"), ("Geometries", "7")]
     assert sections["Memory"] == [
         ("GPU", "3.1 MiB"),
