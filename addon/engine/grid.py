@@ -13,8 +13,9 @@ import numpy as np
 
 #: Cells for each shape. Between 2 and 8 the time hardly changes, the memory does.
 DENSITY = 4.0
-#: Cells along an axis below which no grid is made: through what is flat a tree is as fast.
-LEAST_CELLS = 4
+#: Cells along an axis below and above which no grid is made: through what is flat a tree is as fast, and rays' work is
+#: bounded.
+LEAST_CELLS, MOST_CELLS = 4, 512
 #: Beyond so many for each shape likewise: cells that it is in, and that its box is in; about the least share of these.
 MOST_ITEMS = 12
 _MOST_PAIRS = 24
@@ -36,8 +37,8 @@ class Grid:
     """Cells of one size, in x first, and what is in them.
 
     Attributes:
-        lower: (3,) float64, the lower corner of the first cell.
-        size: (3,) float64, of a cell.
+        lower: (3,) float64, the lower corner of the first cell. float32 holds it.
+        size: (3,) float64, of a cell. float32 holds 1 / size.
         resolution: (3,) int64, cells along each axis.
         first: (cells + 1,) int64. Cell c holds `items[first[c]:first[c + 1]]`.
         items: (m,) int64 numbers of shapes, each in every cell that it reaches.
@@ -67,10 +68,10 @@ def build(base: np.ndarray, axis: np.ndarray, radius: np.ndarray, test_cost: flo
     if not (extent > 0.0).all():  # so far from the origin that radii are lost
         return None
     resolution = np.rint(extent * np.cbrt(DENSITY * len(radius) / extent.prod())).astype(np.int64)
-    if resolution.min() < LEAST_CELLS:
+    if resolution.min() < LEAST_CELLS or resolution.max() > MOST_CELLS:
         return None
-    size = extent * (1.0 + 2.0 * PADDING / resolution) / resolution
-    start = start - 0.5 * (size * resolution - extent)
+    start = _stored(start - PADDING * extent / resolution)
+    size = 1.0 / _stored(resolution / (upper.max(axis=1) - start) / (1.0 + PADDING / resolution))
     low, high = (
         np.clip((corners - start[:, None]) / size[:, None], 0, resolution[:, None] - 1).astype(np.int32)
         for corners in (lower - PADDING * size[:, None], upper + PADDING * size[:, None])
@@ -94,6 +95,11 @@ def build(base: np.ndarray, axis: np.ndarray, radius: np.ndarray, test_cost: flo
         return None
     first = np.concatenate([[0], np.cumsum(counts)])
     return Grid(start, size, resolution, first, shape[np.argsort(cell, kind="stable")])
+
+
+def _stored(values):
+    """(3,) float64: numbers that float32 holds, as the shader has them; none is larger than it was."""
+    return np.nextafter(values.astype(np.float32), -np.float32(np.inf)).astype(np.float64)
 
 
 def _cost(size, resolution, items, test_cost):

@@ -9,7 +9,7 @@ _SPHERE, _CYLINDER = (layout.KINDS.index(kind) for kind in ("sphere", "cylinder"
 #: Share of a quickly built tree's cost up to which a grid takes the place of a good one: at 0.7 both take as long.
 _WORTH = 0.6
 #: Indices that an item can refer to.
-_MOST = 1 << reference.LOW_BITS - 1
+_INDICES = 1 << (reference.LOW_BITS - 1)
 
 
 def may_have_grid(parts):
@@ -20,10 +20,10 @@ def may_have_grid(parts):
 def better_grid(hits, bases, tree_cost):
     """The `grid.Grid` of a geometry that may have one, where rays are through it sooner than through its tree; or None.
 
-    `hits`: arrays of its primitives' first records, by kind number; `bases`: index of the first of each kind;
-    `tree_cost`: of a tree that was built quickly.
+    `hits`: arrays of its primitives' first records, by kind number: what is in a cell is told from the very numbers
+    that the shader has. `bases`: index of the first of each kind; `tree_cost`: of a tree that was built quickly.
     """
-    if any(bases[kind] + len(records) > _MOST for kind, records in hits.items()):
+    if any(bases[kind] + len(records) > _INDICES for kind, records in hits.items()):
         return None
     base, axis, height, radius = _capsules(hits)
     return grid.build(base, height[:, None] * axis, radius, _test_cost(hits), _WORTH * tree_cost)

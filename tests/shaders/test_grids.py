@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from addon.engine import grid, grid_packing, layout, reference
+from addon.engine import Session, Settings, grid, grid_packing, layout, reference
 from addon.engine.leaves import MANY
 from addon.engine.packing import pack
 from addon.engine.primitives import Cylinders, Spheres, Triangles
-from addon.engine.scene import Geometry, Instances
+from addon.engine.scene import Geometry, Instances, Material
 
 from . import scenes, shapes
 from .test_traversal import assert_as_brute_force, each_seed, random_rays, rays_for, traverse
@@ -89,9 +89,9 @@ def test_a_crowd_among_instances_with_trees(device, seed):
 
 @each_seed
 @each_crowd
-@pytest.mark.parametrize("away", [0.0, 100.0, 1e4])
+@pytest.mark.parametrize("away", [0.0, 100.0, 1e4, 1e5])
 def test_rays_meet_the_same_as_in_a_tree(device, crowd, away, seed):
-    """Up to 10,000 times as far off as the crowd is large. Of spheres the tests are the same, bit by bit; a cylinder's
+    """Up to 100,000 times as far off as the crowd is large. Of spheres the tests are the same, bit by bit; a cylinder's
     unit axis is rounded elsewhere."""
     rng = np.random.default_rng(seed)
     scene, _ = crowded(rng, crowd)
@@ -101,9 +101,9 @@ def test_rays_meet_the_same_as_in_a_tree(device, crowd, away, seed):
     tree = traverse(device, scene, origin, direction, packed=pack(scene, device.max_texture_size, keep=True))
     found = traverse(device, scene, origin, direction)
     same = np.isclose(found.t, tree.t, rtol=0.0 if crowd in ("spheres", "inside out") else 1e-5)
-    assert np.mean(~same) <= (1e-3 if away == 1e4 or crowd in ("both", "cylinders") else 0.0)
+    assert np.mean(~same) <= (1e-3 if away >= 1e4 or crowd in ("both", "cylinders") else 0.0)
     assert np.mean(found.any != tree.any) <= np.mean(~same)
-    assert np.mean(found.number != tree.number) < 5e-3  # two at the same distance
+    assert np.mean(found.number != tree.number) < 2e-2  # two at the same distance
 
 
 @each_seed
@@ -140,6 +140,38 @@ def test_a_crowd_with_triangles_and_one_that_will_move_have_trees():
     corners = rng.uniform(-1.0, 1.0, (3, 20, 3))
     scene.add(Triangles(p0=corners[0], p1=corners[1], p2=corners[2]))
     assert "HAS_GRID" not in pack(scene, 16384).features
+
+
+@pytest.mark.parametrize(("limit", "most"), [("grid_packing.MANY", COUNT), ("tree_packing._MOST_IN_GRIDS", COUNT - 1)])
+def test_trees_where_there_are_too_many(limit, most, monkeypatch):
+    scene, _ = crowded(np.random.default_rng(0), "spheres")
+    assert "HAS_GRID" in pack(scene, 16384).features
+    monkeypatch.setattr(f"addon.engine.{limit}", most)
+    assert "HAS_GRID" not in pack(scene, 16384).features
+
+
+def test_a_crowd_that_comes_to_a_scene_that_is_there(device):
+    """Its grid lies behind the trees of the scene before; nothing in it is moved there as a node is."""
+
+    def picture(*scenes_in_turn):
+        session = Session(device)
+        for scene in scenes_in_turn:
+            session.load(scene, Settings(max_depth=1))
+        session.start(64, 48)
+        while session.step(1.0):
+            pass
+        found = session.pixels().copy()
+        session.free()
+        return found
+
+    rng = np.random.default_rng(0)
+    first, _ = scenes.mixed(rng, 0, 3)
+    both = scenes.empty_scene()
+    both.materials, both.instances = list(first.materials), list(first.instances)
+    slot = scenes.new_materials(both, 1)
+    both.materials[slot] = Material(glow=0.5)
+    both.instances.append(Instances(Geometry(*crowd_of(rng, "both")), np.eye(4), (slot,)))
+    assert np.array_equal(picture(first, both), picture(both))
 
 
 def test_trees_where_grids_have_no_room():
