@@ -62,11 +62,12 @@ def _ratios(values, path):
         axes.bar(x, [ratio for _, ratio in shown], width, label=program, color=COLORS[program], bottom=0.0)
     axes.axhline(1.0, color="black", linewidth=1.0)
     axes.set_yscale("log")
+    axes.set_ylim(bottom=0.8 * min(1.0, *(row["ratio"][p] for row in values["scenes"].values() for p in row["ratio"])))
     _tell_values(axes)
     axes.set_xticks(range(len(names)), names, rotation=30, ha="right")
     axes.set_ylabel("seconds / Conic's seconds")
     axes.set_title(f"Above 1: Conic is faster ({values['size']} x {values['size']})", fontsize=10)
-    axes.legend(frameon=False, ncols=len(programs) or 1)
+    axes.legend(frameon=False, ncols=len(programs) or 1, loc="lower right", bbox_to_anchor=(1.0, 1.0))
     _save(figure, path)
 
 
