@@ -94,7 +94,7 @@ class IMPORT_SCENE_OT_nff(ImportHelper, bpy.types.Operator):
             if self.use_camera:
                 context.scene.camera = camera
             if self.use_background:
-                context.scene.world = nff_scene.new_world(stem, file.scene.world)
+                nff_scene.set_world(context.scene, stem, file.scene.world)
             if self.use_resolution:
                 self._set_resolution(context.scene.render, file)
         for obj in collection.objects:

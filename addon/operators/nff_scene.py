@@ -71,13 +71,13 @@ def new_light(name, light, box, fades):
     return obj
 
 
-def new_world(name, world):
-    """A world of one colour that lights nothing, as in NFF."""
+def set_world(scene, name, world):
+    """Give a scene a world of one colour that lights nothing, as in NFF."""
     made = bpy.data.worlds.new(name)
     tree, output = new_tree(made)
     background = new_node(tree, "Background", 1, Color=(*world.color, 1.0))
     tree.links.new(background.outputs[0], output.inputs["Surface"])
     made.color = world.color
+    scene.world = made
     if hasattr(made, "cycles_visibility"):
-        made.cycles_visibility.diffuse = False
-    return made
+        made.cycles_visibility.diffuse = False  # Cycles wants the scene to have a world by now

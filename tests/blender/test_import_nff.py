@@ -246,6 +246,14 @@ def test_camera_background_and_size_are_the_views(imports, angle):
     np.testing.assert_allclose(scene.world.color.value, (0.1, 0.2, 0.4), rtol=1e-6)
 
 
+def test_a_scene_without_a_world_gets_one_that_lights_nothing(imports, capfd):
+    assert bpy.context.scene.world is None
+    imports(ALL_KINDS)
+    said = capfd.readouterr()
+    assert "Traceback" not in said.out + said.err
+    assert not bpy.context.scene.world.cycles_visibility.diffuse
+
+
 def test_options_leave_the_scenes_own(imports):
     before = bpy.context.scene.render.resolution_x
     imports(ALL_KINDS, use_camera=False, use_lights=False, use_background=False, use_resolution=False)
