@@ -26,7 +26,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import addon
 from addon.viewport import scenes
 from tests.app.live_view import Screen, fill_window, point_at_view, run_in_window, view_parts
-from tests.app.torture_edits import FORGETTING, Edits, operate, spaces, start_scene
+from tests.app.scene_edits import start_scene
+from tests.app.torture_edits import Edits, operate, spaces
+from tests.app.window_edits import FORGETTING
 
 sys.dont_write_bytecode = True
 FOLDER, WHAT, *REST_OF_ARGUMENTS = sys.argv[sys.argv.index("--") + 1 :]
