@@ -1,4 +1,4 @@
-"""What the leaves of trees hold, and which of the shader's tests that asks for."""
+"""What the leaves of trees hold, and what stands outside of trees."""
 
 import numpy as np
 
@@ -9,8 +9,8 @@ from .primitives import BY_KIND
 _SIZE = 8
 #: Cylinders and cones stand alone in their leaves, and so do spheres beside them: one test serves all three, without a
 #: loop, which vector processors leave only when the fullest of their leaves is done.
-_QUADRICS = np.isin(layout.KINDS[: len(BY_KIND)], ("cylinder", "cone"))
-_ROUND = _QUADRICS | np.isin(layout.KINDS[: len(BY_KIND)], "sphere")
+QUADRICS = np.isin(layout.KINDS[: len(BY_KIND)], ("cylinder", "cone"))
+ROUND = QUADRICS | np.isin(layout.KINDS[: len(BY_KIND)], "sphere")
 #: From so many primitives in a geometry on memory counts more than a little time.
 MANY = 1 << 17
 
@@ -20,30 +20,12 @@ _INTERSECTION_COST_OF_MANY = np.array([cls.intersection_cost_of_many for cls in 
 
 def sizes(counts):
     """`leaf_size` (K,) of `bvh.build` for geometries with (K,) primitives by kind in all."""
-    return np.where(_ROUND & counts[_QUADRICS].any(), 1, _SIZE)
+    return np.where(ROUND & counts[QUADRICS].any(), 1, _SIZE)
 
 
 def costs(counts):
     """`intersection_cost` (K,) of `bvh.build`, likewise."""
     return _INTERSECTION_COST_OF_MANY if counts.sum() >= MANY else INTERSECTION_COST
-
-
-def features(plan, in_grids):
-    """The features of the shader that say which kinds are tested where. `in_grids` (G,) bool: geometries that have a
-    grid in place of a tree."""
-    counts = np.where(in_grids[:, None], 0, plan.counts_in_trees)
-    found = {f"HAS_{BY_KIND[label].kind.upper()}_LEAVES" for label in np.flatnonzero(counts.any(axis=0))}
-    found |= {f"HAS_{BY_KIND[label].kind.upper()}_OUTSIDE" for label in np.flatnonzero(plan.outside)}
-    quadrics, spheres = counts[:, _QUADRICS].any(axis=1), counts[:, _ROUND & ~_QUADRICS].any(axis=1)
-    if in_grids.any():
-        found.add("HAS_GRID")
-        if plan.counts_in_trees[in_grids][:, _QUADRICS].any():
-            found.add("HAS_GRID_CYLINDERS")
-        if not (plan.placed or counts.any()):
-            found.add("HAS_GRID_ALONE")
-    if quadrics.any():
-        found |= {"HAS_QUADRIC_LEAVES"} | ({"HAS_SPHERE_RUNS"} if (spheres & ~quadrics).any() else set())
-    return found
 
 
 def places_outside(plan, bases):

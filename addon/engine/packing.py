@@ -22,7 +22,7 @@ from .packed_scene import PackedScene
 from .plan import PLANE_ATTRIBUTES, check_matrices, make_plan
 from .primitives import BY_KIND, Similarity
 from .residency import Residency, ResidentInstances, ResidentPlanes, Upload, is_same, references
-from .scene import Visibility
+from .scene_features import features_of_packed
 from .settings import SHADOWS
 from .timing import timed
 from .tree_packing import QUICK_FROM, TreePacker, rows_by_kind
@@ -388,26 +388,9 @@ class _Packer:
     # The whole
 
     def _features(self, planes):
-        totals = self.plan.counts.sum(axis=0)
-        features = {f"HAS_{cls.kind.upper()}" for cls, count in zip(BY_KIND, totals, strict=True) if count}
         in_grids = np.zeros(len(self.plan.geometries), bool)
         in_grids[[number for number, resident in self.residency.geometries.items() if resident.tree.is_grid]] = True
-        features |= leaves.features(self.plan, in_grids) | self.materials.features()
-        if len(planes):
-            features.add("HAS_PLANE")
-        if self.plan.placed:
-            features.add("HAS_INSTANCES")
-        if self.plan.attributes.names:
-            features.add("HAS_ATTRIBUTES")
-        seen = {int(p.visibility) for p in self.plan.placed} | set(np.unique(planes["visibility"]).astype(int).tolist())
-        features |= self.lights.features
-        if any(~bits & Visibility.ALL for bits in seen):
-            features.add("HAS_VISIBILITY")
-        if any(bits & Visibility.HOLDOUT for bits in seen):
-            features.add("HAS_HOLDOUT")
-        if any(bits & Visibility.SHADOW_CATCHER for bits in seen):
-            features.add("HAS_SHADOW_CATCHER")
-        return frozenset(features)
+        return features_of_packed(self.plan, in_grids, planes, self.materials, self.lights)
 
     def _statistics(self, trees, top, depth):
         plan = self.plan
