@@ -66,7 +66,7 @@ def test_a_shape_is_in_cells_a_little_beyond_its_surface_too(seed):
 
 
 @each_seed
-@pytest.mark.parametrize(("length", "most"), [(0.0, 0.0), (3.0, 0.05)])
+@pytest.mark.parametrize(("length", "most"), [(0.0, 0.0), (3.0, 0.06)])
 def test_few_shapes_are_in_cells_that_they_do_not_reach(seed, length, most):
     rng = np.random.default_rng(seed)
     base, axis, radius = crowd(rng, 300, length)
@@ -81,6 +81,21 @@ def test_few_shapes_are_in_cells_that_they_do_not_reach(seed, length, most):
         distance = np.minimum(distance, np.sqrt((away**2).sum(axis=-1)).min(axis=0))
     padded = radius[item] + grid.PADDING * made.size.max() + 1e-3 * made.size.max()
     assert np.mean(distance > padded) <= most
+
+
+@pytest.mark.parametrize("side", [8, 12, 16])
+def test_cells_suit_a_lattice(monkeypatch, side):
+    """Finer ones cost less where shapes of neighbouring planes then share fewer cells."""
+    place = np.stack(np.meshgrid(*[np.arange(side + 1.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    struts = [(place[place[:, k] < side], np.eye(3)[k]) for k in range(3)]
+    base = np.concatenate([place, *(start + 0.12 * step for start, step in struts)])
+    axis = np.concatenate([np.zeros_like(place), *(np.tile(0.76 * step, (len(start), 1)) for start, step in struts)])
+    radius = np.repeat([0.25, 0.0625], [len(place), len(base) - len(place)])
+    taken = built(base, axis, radius)
+    monkeypatch.setattr(grid, "_finer", lambda *_: None)
+    plain = built(base, axis, radius)
+    assert taken.resolution.max() > plain.resolution.max()
+    assert taken.cost(0.8) < 0.96 * plain.cost(0.8)
 
 
 @settings(deadline=None, max_examples=60)
