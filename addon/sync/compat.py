@@ -13,12 +13,14 @@ _RANDOM_BY_LEVELS = (5, 0, 0)
 _LEVELS = 8
 
 
+def may_lack_nodes(owner):
+    """Whether a material, world or light has a switch that says whether its nodes are used."""
+    return bpy.app.version < (_LIGHTS_ALWAYS_NODES if isinstance(owner, bpy.types.Light) else _ALWAYS_NODES)
+
+
 def node_tree(owner):
     """The node tree in use of a material, world or light; None where it is shaded without nodes."""
-    always = _LIGHTS_ALWAYS_NODES if isinstance(owner, bpy.types.Light) else _ALWAYS_NODES
-    if bpy.app.version < always and not owner.use_nodes:
-        return None
-    return owner.node_tree
+    return None if may_lack_nodes(owner) and not owner.use_nodes else owner.node_tree
 
 
 def flattened(owner):

@@ -177,7 +177,7 @@ class _Reading:
             read = read_triangles(mesh, self._slots, maps, self._keys, None if found is None else found.rest)
             if read.dropped:
                 dropped, verb = counted(read.dropped, "triangle"), "is" if read.dropped == 1 else "are"
-                note(f": {dropped} with NaN or infinite vertices {verb} not rendered")
+                note(f": {dropped} with vertices that are not finite or beyond 1e18 m {verb} not rendered")
             parts = [*(found.primitives if found else ()), *([read.triangles] if read.triangles is not None else [])]
             return Geometry(*parts, name=self._copies.data.name) if parts else None
 
@@ -194,7 +194,7 @@ class _Reading:
         def read(note):
             found = read_points(cloud, self._slots, self._keys)
             if found.not_finite:
-                note(f" has {counted(found.not_finite, 'point')} not finite in place or radius, not rendered")
+                note(f" has {counted(found.not_finite, 'point')} not finite or beyond 1e18 m, not rendered")
             if found.without_radius:
                 note(f" has {counted(found.without_radius, 'point')} without a radius above 0, not rendered")
             return found.geometry

@@ -4,11 +4,12 @@
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+import bpy
 import numpy as np
 
 from ..engine.scene import Triangles
 from .attributes import of_triangles
-from .raw_attributes import read_corner_vertices, read_positions, read_raw
+from .raw_attributes import are_places, read_corner_vertices, read_positions, read_raw
 from .recognise import MeshArrays
 
 
@@ -62,8 +63,8 @@ def is_closed_mesh(mesh):
 
 @dataclass(frozen=True)
 class MeshTriangles:
-    """Triangles in object space, or None where the mesh has none, and how many were dropped for vertices that are not
-    finite."""
+    """Triangles in object space, or None where the mesh has none, and how many were dropped for vertices that are no
+    places."""
 
     triangles: Triangles | None
     dropped: int = 0
@@ -83,7 +84,7 @@ def read_triangles(mesh, slot_count, uv_maps=(), keys=(), wanted=None):
         return MeshTriangles(None)
     vertices = read_corner_vertices(mesh)[corners]
     positions = read_positions(mesh)
-    good = np.isfinite(positions).all(axis=1)
+    good = are_places(positions)
     dropped = 0
     if not good.all():
         keep = good[vertices].all(axis=1)
@@ -115,7 +116,8 @@ def _triangulation(mesh):
 
 
 def _normals(mesh, corners, faces):
-    """Columns n0, n1, n2 of triangles, 0 where the face is flat; nothing where all are."""
+    """Columns n0, n1, n2 of triangles, 0 where the face is flat; nothing where all are. Beside smooth faces a flat one
+    that is bent has one normal as a whole, where Cycles has it so: in Blender 5.2, not yet in 5.0."""
     if mesh.normals_domain == "FACE":
         return {}
     normals = np.empty(len(mesh.loops) * 3, np.float32)
@@ -123,7 +125,7 @@ def _normals(mesh, corners, faces):
     normals = np.nan_to_num(normals.reshape(-1, 3), copy=False)
     of_triangle = normals[corners.T]
     sharp = read_raw(mesh, "sharp_face", "FACE", "BOOLEAN")
-    if sharp is not None and not mesh.has_custom_normals:
+    if sharp is not None and not mesh.has_custom_normals and bpy.app.version < (5, 1, 0):
         of_triangle[:, sharp[faces]] = 0.0
     return dict(zip(("n0", "n1", "n2"), of_triangle, strict=True))
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..engine.scene import Geometry, Spheres
 from .attributes import of_points
-from .raw_attributes import read_positions, read_raw
+from .raw_attributes import FARTHEST, are_places, read_positions, read_raw
 
 #: The radius of points that have none, as in Blender.
 DEFAULT_RADIUS = 0.01
@@ -32,8 +32,8 @@ def read_points(cloud, slot_count, keys=()):
     radius = np.full(count, DEFAULT_RADIUS, np.float32) if radius is None else radius
     slots = read_raw(cloud, "material_index", "POINT", "INT")
     finite = np.isfinite(radius)
-    if not np.isfinite(center).all():  # much faster than row by row
-        finite &= np.isfinite(center).all(axis=1)
+    if count and not np.abs(center).max() <= FARTHEST:  # much faster than row by row
+        finite &= are_places(center)
     good = finite & (radius > 0.0)
     not_finite, kept = int(count - finite.sum()), int(good.sum())
     without_radius = count - not_finite - kept

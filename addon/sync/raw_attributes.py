@@ -19,6 +19,15 @@ TYPES = {
 }
 
 
+#: Beyond it squares of lengths leave the range of float32, and nothing is drawn.
+FARTHEST = 1e18
+
+
+def are_places(positions):
+    """(n,) bool: whether points (n, 3) are finite, and not farther than what can be drawn."""
+    return (np.abs(positions) <= FARTHEST).all(axis=1)
+
+
 def values_of(attribute):
     """The values of an attribute, (n,), or (n, width) where they have several numbers."""
     member, dtype, width = TYPES[attribute.data_type]

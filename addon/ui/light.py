@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panel of a light: what Conic does with it and nothing else."""
+"""The panels of a light: what Conic does with it and nothing else."""
 
 import bpy
 
+from ..sync.compat import may_lack_nodes, node_tree
 from .base import PropertiesPanel
 
 
@@ -52,4 +53,28 @@ def _draw_shape(column, light):
         column.prop(light, "show_cone")
 
 
-register, unregister = bpy.utils.register_classes_factory((CONIC_LIGHT_PT_light,))
+class CONIC_LIGHT_PT_nodes(PropertiesPanel, bpy.types.Panel):
+    bl_label = "Nodes"
+    bl_context = "data"
+
+    @classmethod
+    def poll(cls, context):
+        light = context.light
+        return light and (may_lack_nodes(light) or light.node_tree) and super().poll(context)
+
+    def draw(self, context):
+        layout, light = self.layout, context.light
+        layout.use_property_split = True
+        if may_lack_nodes(light):
+            layout.prop(light, "use_nodes", toggle=True)
+        tree = node_tree(light)
+        if tree is None:
+            return
+        output = tree.get_output_node("CYCLES")
+        if output is None:
+            layout.label(text="Without an output node it gives no light", icon="ERROR")
+        else:
+            layout.template_node_view(tree, output, output.inputs["Surface"])
+
+
+register, unregister = bpy.utils.register_classes_factory((CONIC_LIGHT_PT_light, CONIC_LIGHT_PT_nodes))

@@ -19,6 +19,7 @@ class CONIC_MATERIAL_PT_settings(PropertiesPanel, bpy.types.Panel):
         column = layout.column(heading="Backface Culling")
         column.prop(material, "use_backface_culling", text="Camera")
         column.prop(material, "use_backface_culling_shadow", text="Shadow")
+        layout.column().prop(material, "pass_index")
 
 
 def _draw_presets(self, context):

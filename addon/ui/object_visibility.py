@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A panel below Blender's own of an object's visibility: which rays see it, and whether it catches shadows."""
+"""A panel below Blender's own of an object's visibility: which rays see it or are lit by it, and whether it catches
+shadows."""
 
 import bpy
 
@@ -14,6 +15,10 @@ def is_seen(obj):
     return obj is not None and (obj.type in SEEN or obj.is_instancer)
 
 
+def is_light(obj):
+    return obj is not None and obj.type == "LIGHT"
+
+
 class CONIC_OBJECT_PT_ray_visibility(PropertiesPanel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
@@ -21,14 +26,19 @@ class CONIC_OBJECT_PT_ray_visibility(PropertiesPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return is_seen(context.object) and super().poll(context)
+        obj = context.object
+        return (is_seen(obj) or is_light(obj)) and super().poll(context)
 
     def draw(self, context):
         layout, obj = as_rows(self.layout), context.object
         column = layout.column()
         column.prop(obj, "visible_camera", text="Camera")
+        if is_light(obj):
+            column.prop(obj, "visible_diffuse", text="Diffuse")
         column.prop(obj, "visible_glossy", text="Glossy")
         column.prop(obj, "visible_transmission", text="Transmission")
+        if is_light(obj):
+            return
         column.prop(obj, "visible_shadow", text="Shadow")
         diffuse = column.column()
         diffuse.active = False

@@ -22,7 +22,6 @@ REFUSED = {
     "DATA_PT_volume_render",
     "EEVEE_MATERIAL_PT_viewport_settings",
     "NODE_DATA_PT_light",
-    "OBJECT_PT_shading",
     "SCENE_PT_audio",
 }
 REFUSED_SUBJECTS = ("freestyle", "lightprobe")  # in the panel's name

@@ -9,6 +9,7 @@ import bpy
 import pytest
 
 from addon import statistics
+from addon.sync.compat import may_lack_nodes
 from addon.ui import (
     film,
     film_presets,
@@ -196,6 +197,17 @@ def test_light_panel_shows_what_is_rendered(kind, shape):
     assert {"type", "color", "energy", "use_shadow"} | shape <= set(drawn.shown) and not drawn.text
 
 
+def test_nodes_of_a_light_are_shown(monkeypatch):
+    lamp = bpy.data.lights.new("light", "POINT")
+    if may_lack_nodes(lamp):
+        lamp.use_nodes = True
+    monkeypatch.setattr(Layout, "template_node_view", lambda self, *view: self.shown.append(view), raising=False)
+    output = lamp.node_tree.get_output_node("CYCLES")
+    assert (lamp.node_tree, output, output.inputs["Surface"]) in draw(light.CONIC_LIGHT_PT_nodes, light=lamp).shown
+    lamp.node_tree.nodes.clear()
+    assert draw(light.CONIC_LIGHT_PT_nodes, light=lamp).text == ["Without an output node it gives no light"]
+
+
 def described():
     """What the panel of the active object shows."""
     return draw(
@@ -279,7 +291,8 @@ def test_nothing_that_rays_cannot_meet_has_a_panel_of_its_shape():
     for data in (None, bpy.data.lights.new("light", "POINT"), bpy.data.cameras.new("camera")):
         bpy.context.view_layer.objects.active = link(data)
         assert not object_shape.CONIC_OBJECT_PT_shape.poll(bpy.context)
-        assert not object_visibility.CONIC_OBJECT_PT_ray_visibility.poll(bpy.context)
+        is_light = data is not None and data.id_type == "LIGHT"
+        assert object_visibility.CONIC_OBJECT_PT_ray_visibility.poll(bpy.context) == is_light
 
 
 RAYS = {"visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow"}
@@ -295,9 +308,24 @@ def test_what_sees_an_object_can_be_set_with_blenders_panel_and_ours(name):
     assert {"hide_render", "is_holdout"} <= set(draw(blenders, object=obj, engine="CONIC").shown)
 
 
-def test_material_panel_shows_backface_culling():
+def test_which_rays_a_light_reaches_can_be_set():
+    obj = bpy.context.view_layer.objects.active = link(bpy.data.lights.new("light", "POINT"))
+    bpy.context.scene.render.engine = "CONIC"
+    panel = object_visibility.CONIC_OBJECT_PT_ray_visibility
+    assert panel.poll(bpy.context) and set(draw(panel, object=obj).shown) == RAYS - {"visible_shadow"}
+
+
+@pytest.mark.skipif(not hasattr(bpy.types, "OBJECT_PT_light_linking"), reason="Blender has these panels from 4.3 on")
+def test_what_a_light_is_linked_to_can_be_set():
+    assert "OBJECT_PT_shading" in shown_panels()
+    assert {bpy.types.OBJECT_PT_light_linking.bl_parent_id, bpy.types.OBJECT_PT_shadow_linking.bl_parent_id} == {
+        "OBJECT_PT_shading"
+    }
+
+
+def test_material_panel_shows_backface_culling_and_the_index():
     shown = draw(material.CONIC_MATERIAL_PT_settings, material=bpy.data.materials.new("any")).shown
-    assert shown == ["use_backface_culling", "use_backface_culling_shadow"]
+    assert shown == ["use_backface_culling", "use_backface_culling_shadow", "pass_index"]
 
 
 def test_statistics_panel_shows_the_newest_figures(monkeypatch):
