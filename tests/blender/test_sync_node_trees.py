@@ -275,3 +275,14 @@ def test_the_node_that_is_not_understood_is_named_not_the_ones_behind_it():
 
     _, synced = shaded(build)
     assert len(synced.warnings("node 'Ambient Occlusion' is not rendered")) == 1 == len(synced.messages)
+
+
+def test_coordinates_from_the_instancer_are_named_by_that():
+    def build(tree, output):
+        coordinates = node(tree, "TexCoord")
+        coordinates.from_instancer = True
+        tree.links.new(coordinates.outputs["UV"], node(tree, "BsdfDiffuse", output.inputs["Surface"]).inputs["Color"])
+
+    synced = shaded(build)[1]
+    assert synced.warnings("'Texture Coordinate'", "from the instancer", "the instance itself")
+    assert len(synced.messages) == 1

@@ -57,7 +57,7 @@ def texture_vector(n, default="generated"):
 
 def _of_instancer(n):
     if n.node.from_instancer:
-        n.instead("coordinates of the instance itself")
+        n.warn("coordinates from the instancer are not rendered; those of the instance itself are used instead")
 
 
 def _generated(n):
