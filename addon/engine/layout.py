@@ -317,6 +317,8 @@ FRAME = _record(
     ("window", "vec4", "left and bottom edge of the picture where the raster has it, and 1 over its width and height"),
     ("world_origin", "vec3", "what positions are relative to"),
     ("unused_origin", "float", ""),
+    ("world_radiance", "vec3", "of a sky that is the same everywhere"),
+    ("unused_radiance", "float", ""),
     ("world_material", "float", "number of the material whose glow is the sky's radiance"),
     ("shadows_pass", "float", "1: shadow rays may pass through what they meet"),
     ("constant_first", "float", ""),

@@ -1,6 +1,7 @@
 """Which program draws a scene: its features and its source."""
 
 from . import entries, shader_source
+from .expression import constant_of
 from .film import UNENDED_ALPHA
 from .visibility import Visibility
 
@@ -44,6 +45,8 @@ def _world_features(packed, settings, world_light):
     if world_light is None:
         return set()
     if settings.samples_world:
+        if constant_of(packed.world.radiance) is not None:
+            return {"HAS_WORLD_LIGHT", "HAS_PLAIN_WORLD"}
         return {"HAS_WORLD_LIGHT"} | ({"HAS_WORLD_GLOSS"} if _gloss_asks_world(packed) else set())
     return {"HAS_HEMISPHERE_LIGHT"} | ({"HAS_AMBIENT_OCCLUSION"} if settings.use_ao else set())
 

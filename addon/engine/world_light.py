@@ -77,6 +77,7 @@ def light_of_world(device, packed, textures):
         light = WorldLight.of_map((yield from _draw_map(device, packed, textures)))
     else:
         light = WorldLight.of_map(np.broadcast_to(constant, (_SIDE, _SIDE, 3)))
+        light.frame["world_radiance"] = constant
     return None if light.is_black else light
 
 

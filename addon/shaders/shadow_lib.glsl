@@ -96,14 +96,19 @@ bool shadow_to_world(inout Shadow shadow, Lit lit)
   float scale;
   vec3 direction = world_light_direction(lit.normal, lit_behind(lit), u, scale);
   float cosine = dot(lit.normal, direction);
-  shadow.contribution = scale * lit_diffuse(lit, direction, cosine);
+  vec3 arriving = vec3(scale);
+#ifdef HAS_PLAIN_WORLD
+  arriving *= frame_world_radiance;
+#else
+  shadow.to_world = true;
+#endif
+  shadow.contribution = arriving * lit_diffuse(lit, direction, cosine);
 #ifdef HAS_ROUGHNESS
   shadow.contribution_bent = shadow.contribution;
 #endif
 #ifdef HAS_WORLD_GLOSS
-  shadow.contribution += scale * lit_glossy(lit, direction, world_light_density(direction));
+  shadow.contribution += arriving * lit_glossy(lit, direction, world_light_density(direction));
 #endif
-  shadow.to_world = true;
   shadow.tint = vec3(1.0);
   shadow.ray = ray_make(shadow_origin(lit, direction), direction, lit.shadow);
   shadow.t_max = 1e30;

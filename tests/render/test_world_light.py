@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from addon.engine import Camera, Image, Material, Scene, SceneError, Session, Settings, World, render, world_light
-from addon.engine.expression import Parameter, call, component
+from addon.engine.expression import Parameter, call, combine, component, maximum
 from addon.engine.visibility import Visibility
 
 UP = (0.0, 0.0, 1.0)
@@ -42,6 +42,20 @@ def test_a_white_ball_disappears_in_a_white_world(device, settings):
     np.testing.assert_allclose(light(device, scene, settings, 32), 1.0, atol=1e-3)
     scene.world = World((1.0, 1.0, 1.0))
     assert light(device, scene, settings, 32).min() == 0.0
+
+
+def test_a_world_that_is_the_same_everywhere_is_known_before_it_is_seen(device):
+    """Rays towards it do not ask its color; the picture is that of a world whose color has to be asked."""
+    pictures = []
+    for red in (0.7, maximum(component(call("point_position"), 2), 2.0) * 0.35):  # the latter is 0.7, but not to be told
+        scene = Scene(world=World(combine(red, 0.5, 0.2), lights=True))
+        scene.materials = [Material(diffuse=0.6, reflect=0.5, roughness=0.4), Material(diffuse=0.0, transmit=0.4, ior=1.0)]
+        scene.camera = Camera.look_at((0, -5, 3), (0, 0, 0), angle=40)
+        scene.add_spheres([(-0.6, 0, 0), (0.7, 0.2, 0)], 0.6, [0, 1])
+        scene.add_plane((0, 0, -0.7), UP)
+        pictures.append(light(device, scene, Settings(samples=4, shadows="TRANSPARENT"), 32))
+    np.testing.assert_allclose(*pictures, atol=1e-5)
+    assert np.ptp(pictures[0]) > 0.3
 
 
 @pytest.mark.parametrize("z", [1.0, 0.0, -1.0, 0.6])
