@@ -133,11 +133,18 @@ vec3 gloss_lit(Material material, float eta, vec3 normal, vec3 view, vec3 light,
   return returned;
 }
 
-/* A direction into which the rough mirrors reflect; `share` is its weight, 0 where it ends in the surface, `density` that of
- * the directions there, times 2 pi. Of two mirrors one is drawn, the coat with the probability `of_coat`. */
-vec3 gloss_mirrored(Material material, float eta, vec3 normal, vec3 incoming, vec2 u, float of_coat, out vec3 share,
-                    out float density)
+/* A ray out of a rough lobe. */
+struct Drawn {
+  vec3 direction;
+  vec3 share;      /* its weight, 0 where it ends in the surface */
+  float density;   /* of the directions there, times 2 pi */
+  float roughness; /* of the lobe */
+};
+
+/* A direction into which the rough mirrors reflect. Of two one is drawn, the coat with the probability `of_coat`. */
+Drawn gloss_mirrored(Material material, float eta, vec3 normal, vec3 incoming, vec2 u, float of_coat)
 {
+  Drawn drawn;
   float roughness = material.roughness;
   float part = 1.0;
 #ifdef HAS_COAT
@@ -149,40 +156,44 @@ vec3 gloss_mirrored(Material material, float eta, vec3 normal, vec3 incoming, ve
   float alpha = roughness > GLOSS_SMOOTH ? roughness * roughness : 0.0;
   vec3 facet = microfacet_sample(normal, -incoming, alpha, u);
   float cosine = clamp(-dot(facet, incoming), 0.0, 1.0);
-  vec3 mirrored = optics_mirror(incoming, facet);
+  drawn.direction = optics_mirror(incoming, facet);
   float cos_view = -dot(normal, incoming);
-  float cos_out = dot(normal, mirrored);
+  float cos_out = dot(normal, drawn.direction);
   float cos_t;
-  share = material_mirror(material, cosine, optics_fresnel(cosine, material_mirror_eta(material, eta), cos_t));
+  drawn.share = material_mirror(material, cosine, optics_fresnel(cosine, material_mirror_eta(material, eta), cos_t));
 #ifdef HAS_COAT
-  share = coated ? gloss_coat(material, cosine) : share;
+  drawn.share = coated ? gloss_coat(material, cosine) : drawn.share;
 #endif
-  share *= cos_out > 0.0 ? microfacet_weight(cos_view, cos_out, alpha) / part : 0.0;
-  density = SAMPLING_CERTAIN;
+  drawn.share *= cos_out > 0.0 ? microfacet_weight(cos_view, cos_out, alpha) / part : 0.0;
+  drawn.density = SAMPLING_CERTAIN;
+  drawn.roughness = roughness;
   if (alpha > 0.0) {
-    float returned = microfacet_mirrored(normal, -incoming, mirrored, alpha, facet);
-    density = part * gloss_density(returned, cos_view, cos_out, alpha);
+    float returned = microfacet_mirrored(normal, -incoming, drawn.direction, alpha, facet);
+    drawn.density = part * gloss_density(returned, cos_view, cos_out, alpha);
   }
-  return mirrored;
+  return drawn;
 }
 
 /* The same of rough transmission. What a facet reflects totally is its mirror's. */
-vec3 gloss_refracted(Material material, float eta, vec3 normal, vec3 incoming, vec2 u, out vec3 share, out float density)
+Drawn gloss_refracted(Material material, float eta, vec3 normal, vec3 incoming, vec2 u)
 {
+  Drawn drawn;
+  drawn.roughness = material.transmit_roughness;
   float alpha = material.transmit_roughness * material.transmit_roughness;
   vec3 facet = microfacet_sample(normal, -incoming, alpha, u);
   float cosine = clamp(-dot(facet, incoming), 0.0, 1.0);
   float cos_t;
-  share = material_through(material, optics_fresnel(cosine, eta, cos_t));
-  vec3 bent = optics_refract(incoming, facet, cosine, cos_t, eta);
+  drawn.share = material_through(material, optics_fresnel(cosine, eta, cos_t));
+  drawn.direction = optics_refract(incoming, facet, cosine, cos_t, eta);
   float cos_view = -dot(normal, incoming);
-  float cos_out = dot(normal, bent);
-  share *= cos_t > 0.0 && cos_out < 0.0 ? microfacet_weight(cos_view, cos_out, alpha) : 0.0;
-  density = SAMPLING_CERTAIN;
+  float cos_out = dot(normal, drawn.direction);
+  drawn.share *= cos_t > 0.0 && cos_out < 0.0 ? microfacet_weight(cos_view, cos_out, alpha) : 0.0;
+  drawn.density = SAMPLING_CERTAIN;
   if (!gloss_enters(eta)) {
-    density = gloss_density(microfacet_refracted(normal, -incoming, bent, alpha, eta, facet), cos_view, cos_out, alpha);
+    float returned = microfacet_refracted(normal, -incoming, drawn.direction, alpha, eta, facet);
+    drawn.density = gloss_density(returned, cos_view, cos_out, alpha);
   }
-  return bent;
+  return drawn;
 }
 
 /* How much of a rough mirror is drawn as a sharp one where a pixel has one sample and shall have no noise. */

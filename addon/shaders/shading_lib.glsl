@@ -6,6 +6,8 @@
 #include "lamp_lib.glsl"
 #endif
 
+#define SHADING_BLOCK 8.0 /* pixels along a side */
+
 /* The rays that go on from a surface, each of them if its `..s` holds. */
 struct Scattered {
   bool reflects;
@@ -116,6 +118,25 @@ vec3 shading_lamps(Path path, float t_max, bool missed)
     }
   }
   return path.weight * seen;
+}
+#endif
+
+#ifdef HAS_ROUGHNESS
+/* Rays out of rough lobes that bring little are followed now and then only, for all the others (Arvo and Kirk 1990, Particle
+ * Transport and Image Synthesis: Russian roulette): the more likely the larger their part of what the surface returns and that of
+ * the pixel, `part` times the drawn share, and the narrower the lobe, since what is bright then is not found by rays to the
+ * lights as well. */
+float shading_chance(Drawn drawn, vec3 part)
+{
+  return clamp(2.0 * optics_largest(part * drawn.share) / drawn.roughness, 1e-3, 1.0);
+}
+
+/* The number that decides, from 0 to 1 and even over the samples. Pixels side by side have the same: processors work on them in
+ * step, so that only what none of them follows is saved. */
+float shading_number(int depth)
+{
+  uint block = sampling_hash(sampling_pixel(floor(PIXEL / SHADING_BLOCK)) ^ uint(depth));
+  return fract(float(block >> 8u) / 16777216.0 + 0.61803399 * frame_sample);
 }
 #endif
 
@@ -244,15 +265,29 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
   float of_coat = 0.0;
   float density_mirrored = SAMPLING_CERTAIN;
   float density_bent = SAMPLING_CERTAIN;
+  float chance_mirrored = 1.0;
+  float chance_bent = 1.0;
 #ifdef HAS_COAT
   mirror_is_rough = mirror_is_rough || gloss_coat_is_rough(material);
   of_coat = optics_mean(coat) / max(optics_mean(coat + mirror), 1e-30);
 #endif
   if (frame_sample >= 0.0) {
+    vec3 returned = material.diffuse + mirror + through;
+#ifdef HAS_TRANSLUCENT
+    returned += material.translucent;
+#endif
+#ifdef HAS_COAT
+    returned += coat;
+#endif
+    vec3 part = path.weight / max(optics_largest(returned), 1e-6);
     /* The same facet for both: together they keep what comes in where they are as rough. Lights take numbers from 0 on. */
     vec2 u = sampling_2d(sampling_pixel(PIXEL), int(frame_sample), -path.depth);
     if (mirror_is_rough) {
-      mirrored = gloss_mirrored(material, eta, normal, incoming, u, of_coat, mirror, density_mirrored);
+      Drawn drawn = gloss_mirrored(material, eta, normal, incoming, u, of_coat);
+      mirrored = drawn.direction;
+      mirror = drawn.share;
+      density_mirrored = drawn.density;
+      chance_mirrored = shading_chance(drawn, part);
     }
 #ifdef HAS_COAT
     else {
@@ -260,7 +295,11 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
     }
 #endif
     if (scatters) {
-      bent = gloss_refracted(material, eta, normal, incoming, u, through, density_bent);
+      Drawn drawn = gloss_refracted(material, eta, normal, incoming, u);
+      bent = drawn.direction;
+      through = drawn.share;
+      density_bent = drawn.density;
+      chance_bent = shading_chance(drawn, part);
     }
   }
   else {
@@ -329,6 +368,13 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
     scattered.reflects = optics_largest(mirror) > frame_weight_cutoff;
     scattered.refracts = optics_largest(through) > frame_weight_cutoff;
   }
+#ifdef HAS_ROUGHNESS
+  float drawn = shading_number(path.depth);
+  scattered.reflects = scattered.reflects && drawn < chance_mirrored;
+  scattered.refracts = scattered.refracts && drawn < chance_bent;
+  mirror /= chance_mirrored;
+  through /= chance_bent;
+#endif
   if (scattered.reflects) {
     Ray ray = shading_reflected(surface, mirrored, face);
     scattered.reflected = path_make(ray, 1e30, mirror, path.depth + 1, path.media);
