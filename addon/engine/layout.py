@@ -225,6 +225,12 @@ MATERIAL = _record(
 )
 # Texels of the parameters of materials' programs, as `node_programs` packs them.
 CONSTANT = _record("constant", "tables", ("value", "vec4", "up to four numbers"))
+# Of the light on rough glass, in the order of `glass_energy`.
+GLASS_ENERGY = _record(
+    "glass_energy",
+    "tables",
+    ("kept", "vec4", "share that leaves again: of two cosines for an index of refraction, of both for the next index"),
+)
 LIGHT = _record(
     "light",
     "tables",
@@ -318,7 +324,7 @@ FRAME = _record(
     ("world_origin", "vec3", "what positions are relative to"),
     ("unused_origin", "float", ""),
     ("world_radiance", "vec3", "of a sky that is the same everywhere"),
-    ("unused_radiance", "float", ""),
+    ("glass_energy_first", "float", ""),
     ("world_material", "float", "number of the material whose glow is the sky's radiance"),
     ("shadows_pass", "float", "1: shadow rays may pass through what they meet"),
     ("constant_first", "float", ""),
@@ -406,6 +412,7 @@ RECORDS = (
     PLANE_SURFACE,
     MATERIAL,
     CONSTANT,
+    GLASS_ENERGY,
     LIGHT,
     LIGHT_SHAPE,
     LIGHT_NODE,

@@ -39,7 +39,7 @@ class Material:
     Schlick, and `edge` tints it near 82 degrees (Hoffman 2023, Generating Real-Time Rendering's F82). `roughness` is
     that of Blender: of microfacets of the GGX distribution whose alpha is its square; with it the lights have
     highlights, and with more than one sample the rays are spread. Rough facets lose what they reflect to each other;
-    with `multiscatter` mirrors without Fresnel and metals give it back. `coat` is the weight of a second mirror, a
+    with `multiscatter` they give it back, by weight. `coat` is the weight of a second mirror, a
     dielectric's of the index `coat_ior`, which lies on top, lets the rest through and tints it. `translucent` is a
     diffuse share of the light from the other side. `diffuse_roughness` is that of Oren and Nayar, as Cycles has it.
     `normal` is the shading normal, of any length, or zero for the surface's own. `holdout` is a share that is cut out

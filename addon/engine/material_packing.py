@@ -8,6 +8,7 @@ import numpy as np
 from . import layout
 from .errors import SceneError
 from .expression import Call, Expression, as_type, attribute_keys, in_order, is_constant, is_zero, vanishes
+from .glass_energy import energy_records
 from .material import Material
 from .node_programs import NodePrograms, constant_texels
 
@@ -125,6 +126,7 @@ class MaterialTable:
             "HAS_ABSORPTION": lambda m: not is_zero(m.absorption),
             "HAS_TRANSMISSION": lambda m: not is_zero(m.transmit),
             "HAS_ROUGHNESS": lambda m: not (is_zero(m.roughness) and is_zero(m.transmit_roughness)) or _has_coat(m),
+            "HAS_GLASS_ENERGY": _gives_back_in_glass,
             "HAS_METALS": lambda m: not (is_zero(m.metallic) and is_zero(m.grazing)),
             "HAS_COAT": _has_coat,
             "HAS_TRANSLUCENT": lambda m: not is_zero(m.translucent),
@@ -140,6 +142,11 @@ class MaterialTable:
         if len(self.programs):
             found |= {"HAS_PROGRAMS", *self.programs.features()}
         return found
+
+    def glass_energy(self):
+        """Records of `layout.GLASS_ENERGY`, none where no material needs them."""
+        needed = any(map(_gives_back_in_glass, self._distinct))
+        return energy_records() if needed else layout.GLASS_ENERGY.zeros(0)
 
     def lets_shadows_pass(self, way):
         """Whether shadow rays may pass through a surface; `way` as `Settings.shadows`."""
@@ -184,6 +191,12 @@ def attribute_names(scene):
     """Names of the attributes that the materials and the outlines of a scene need, sorted."""
     names = attribute_keys([e for material in scene.materials for e in expressions_of(material)])
     return tuple(sorted({*names, scene.outline_attribute} - {""}))
+
+
+def _gives_back_in_glass(material):
+    """Whether facets that bend light give back what they lose."""
+    needed = (material.transmit, material.transmit_roughness, material.multiscatter)
+    return not any(map(is_zero, needed))
 
 
 def _has_coat(material):

@@ -343,6 +343,7 @@ class _Packer:
         records = {
             "material": materials,
             "constant": constants,
+            "glass_energy": self.materials.glass_energy(),
             **self.lights.records,
             "plane": planes,
             "plane_surface": plane_surfaces,

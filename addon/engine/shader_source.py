@@ -63,6 +63,7 @@ FEATURES = SPARE.union(
         "HAS_HEMISPHERE_LIGHT",
         "HAS_AMBIENT_OCCLUSION",
         "HAS_ROUGHNESS",
+        "HAS_GLASS_ENERGY",
         "HAS_METALS",
         "TINTED_SHADOWS",
         "TRANSPARENT_SHADOWS",
@@ -79,6 +80,7 @@ FEATURES = SPARE.union(
 
 #: Features that others need.
 NEEDS = _PLACES | {
+    "HAS_GLASS_ENERGY": {"HAS_TRANSMISSION", "HAS_ROUGHNESS"},
     "HAS_GRID": {"HAS_SPHERE"},
     "HAS_GRID_ALONE": {"HAS_GRID", "HAS_SPHERE"},
     "HAS_GRID_CYLINDERS": {"HAS_GRID", "HAS_CYLINDER"},

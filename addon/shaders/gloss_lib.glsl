@@ -30,21 +30,60 @@ bool gloss_transmission_is_rough(Material material, float eta)
   return material.transmit_roughness > GLOSS_SMOOTH && abs(eta - 1.0) > 1e-3 && optics_largest(material.transmit) > 0.0;
 }
 
-/* Let the rough facets of a mirror or metal give back what they reflect to each other. */
-void gloss_give_back(inout Material material, float cosine)
+#ifdef HAS_GLASS_ENERGY
+#include <glass_energy>
+#define GLOSS_ENERGY_SIDE 16 /* of the table of `glass_energy` */
+
+/* Share of the light on rough glass that leaves it after it has met one facet. */
+float gloss_kept_by_glass(float cosine, float roughness, float eta)
 {
-  if (material.multiscatter > 0.5 && gloss_mirror_is_rough(material)) {
+  vec3 place = clamp(vec3(cosine, sqrt(abs((1.0 - eta) / (1.0 + eta))), roughness), 0.0, 1.0) * float(GLOSS_ENERGY_SIDE - 1);
+  vec3 cell = min(floor(place), float(GLOSS_ENERGY_SIDE - 2));
+  ivec3 number = ivec3(cell);
+  int first = ((eta > 1.0 ? GLOSS_ENERGY_SIDE : 0) + number.z) * GLOSS_ENERGY_SIDE + number.y;
+  first = first * GLOSS_ENERGY_SIDE + number.x;
+  vec4 smoother = read_glass_energy(first).kept;
+  vec4 rougher = read_glass_energy(first + GLOSS_ENERGY_SIDE * GLOSS_ENERGY_SIDE).kept;
+  vec4 near = mix(smoother, rougher, place.z - cell.z);
+  vec2 along = mix(near.xy, near.zw, place.y - cell.y);
+  return mix(along.x, along.y, place.x - cell.x);
+}
+#endif
+
+/* Let rough facets give back what they send to each other. Returned is the share that the mirror keeps of what falls on it. */
+float gloss_give_back(inout Material material, float cosine, float eta)
+{
+  float mirror_kept = 1.0;
+  if (material.multiscatter < 0.5) {
+    return mirror_kept;
+  }
+  vec3 mirror_factor = vec3(1.0);
+  if (gloss_mirror_is_rough(material)) {
     float alpha = material.roughness * material.roughness;
-    if (material.fresnel < 0.5) {
-      material.reflect *= microfacet_given_back(material.reflect, cosine, alpha);
-    }
+    float lost = microfacet_lost(cosine, alpha);
+    float mean_lost = microfacet_mean_lost(alpha);
+    float mean_fresnel = material.fresnel > 0.5 ? optics_fresnel_mean(material_mirror_eta(material, eta)) : 1.0;
+    mirror_factor = microfacet_given_back(material.reflect * mean_fresnel, lost, mean_lost);
+    mirror_kept = (1.0 - lost) * optics_largest(mirror_factor);
 #ifdef HAS_METALS
     vec3 mean = optics_metal_mean(material.metallic, material.grazing, material.edge);
-    vec3 factor = microfacet_given_back(mean, cosine, alpha);
+    vec3 factor = microfacet_given_back(mean, lost, mean_lost);
     material.metallic *= factor;
     material.grazing *= factor;
 #endif
   }
+#ifdef HAS_GLASS_ENERGY
+  if (gloss_transmission_is_rough(material, eta)) {
+    float lost = 1.0 - gloss_kept_by_glass(cosine, material.transmit_roughness, eta);
+    vec3 mean = mix(material.transmit, material.reflect, optics_fresnel_mean(eta));
+    vec3 factor = microfacet_given_back(mean, lost, lost);
+    float of_glass = min(optics_largest(material.transmit) / max(optics_largest(material.reflect), 1e-6), 1.0);
+    mirror_factor = mix(mirror_factor, factor, of_glass);
+    material.transmit *= factor;
+  }
+#endif
+  material.reflect *= mirror_factor;
+  return mirror_kept;
 }
 
 #ifdef HAS_COAT
@@ -194,6 +233,25 @@ Drawn gloss_refracted(Material material, float eta, vec3 normal, vec3 incoming, 
     drawn.density = gloss_density(returned, cos_view, cos_out, alpha);
   }
   return drawn;
+}
+
+/* Rays out of rough lobes that bring little are followed now and then only, for all the others (Arvo and Kirk 1990, Particle
+ * Transport and Image Synthesis: Russian roulette): the more likely the larger their part of what the surface returns and that of
+ * the pixel, `part` times the drawn share, and the narrower the lobe, since what is bright then is not found by rays to the
+ * lights as well. */
+float gloss_chance(Drawn drawn, vec3 part)
+{
+  return clamp(2.0 * optics_largest(part * drawn.share) / drawn.roughness, 1e-3, 1.0);
+}
+
+#define GLOSS_BLOCK 8.0 /* pixels along a side */
+
+/* The number that decides, from 0 to 1 and even over the samples. Pixels side by side have the same: processors work on them in
+ * step, so that only what none of them follows is saved. */
+float gloss_number(int depth)
+{
+  uint block = sampling_hash(sampling_pixel(floor(PIXEL / GLOSS_BLOCK)) ^ uint(depth));
+  return fract(float(block >> 8u) / 16777216.0 + 0.61803399 * frame_sample);
 }
 
 /* How much of a rough mirror is drawn as a sharp one where a pixel has one sample and shall have no noise. */

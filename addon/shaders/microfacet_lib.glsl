@@ -87,12 +87,11 @@ float microfacet_mean_lost(float alpha)
   return alpha * alpha * (3.5757 - 1.1751 * alpha) / (1.0 + 2.9102 * alpha + 0.1531 * alpha * alpha);
 }
 
-/* What multiplies the mirrored light to give back what is lost so, where facets reflect `reflectance` of it on the mean
- * (Turquin 2019, Practical Multiple Scattering Compensation; its colour after Kulla and Conty 2017; as Cycles). */
-vec3 microfacet_given_back(vec3 reflectance, float cosine, float alpha)
+/* What multiplies the light that leaves to give back what is lost so, the share `lost` and on the mean over all directions
+ * `mean_lost`, where facets return `reflectance` of what meets them (Turquin 2019, Practical Multiple Scattering Compensation; its
+ * colour after Kulla and Conty 2017; as Cycles). */
+vec3 microfacet_given_back(vec3 reflectance, float lost, float mean_lost)
 {
-  float lost = microfacet_lost(cosine, alpha);
-  float mean_lost = microfacet_mean_lost(alpha);
   vec3 again = reflectance * (1.0 - mean_lost) / (1.0 - min(reflectance, 1.0) * mean_lost);
   return 1.0 + again * (lost / (1.0 - lost));
 }

@@ -24,6 +24,14 @@ float optics_fresnel(float cos_i, float eta, out float cos_t)
   return 0.5 * (r_s * r_s + r_p * r_p);
 }
 
+/* Its mean over the directions that a diffuse surface is lit from: fits for a denser body beyond and before (Kulla and Conty 2017,
+ * Revisiting Physically Based Shading at Imageworks). */
+float optics_fresnel_mean(float eta)
+{
+  float n = 1.0 / eta;
+  return n < 1.0 ? 0.997118 + n * (0.1014 - n * (0.965241 + n * 0.130607)) : (n - 1.0) / (4.08567 + 1.00071 * n);
+}
+
 /* Reflectance of a metal that has the share `normal` at normal incidence and `grazing`, if that is more, at grazing incidence
  * (Schlick 1994); near 82 degrees, where the cosine is 1/7, it is `edge` of that (Hoffman 2023). */
 vec3 optics_metal(vec3 normal, vec3 grazing, vec3 edge, float cosine)

@@ -6,8 +6,6 @@
 #include "lamp_lib.glsl"
 #endif
 
-#define SHADING_BLOCK 8.0 /* pixels along a side */
-
 /* The rays that go on from a surface, each of them if its `..s` holds. */
 struct Scattered {
   bool reflects;
@@ -121,25 +119,6 @@ vec3 shading_lamps(Path path, float t_max, bool missed)
 }
 #endif
 
-#ifdef HAS_ROUGHNESS
-/* Rays out of rough lobes that bring little are followed now and then only, for all the others (Arvo and Kirk 1990, Particle
- * Transport and Image Synthesis: Russian roulette): the more likely the larger their part of what the surface returns and that of
- * the pixel, `part` times the drawn share, and the narrower the lobe, since what is bright then is not found by rays to the
- * lights as well. */
-float shading_chance(Drawn drawn, vec3 part)
-{
-  return clamp(2.0 * optics_largest(part * drawn.share) / drawn.roughness, 1e-3, 1.0);
-}
-
-/* The number that decides, from 0 to 1 and even over the samples. Pixels side by side have the same: processors work on them in
- * step, so that only what none of them follows is saved. */
-float shading_number(int depth)
-{
-  uint block = sampling_hash(sampling_pixel(floor(PIXEL / SHADING_BLOCK)) ^ uint(depth));
-  return fract(float(block >> 8u) / 16777216.0 + 0.61803399 * frame_sample);
-}
-#endif
-
 /* What a surface gives off towards a path that meets it after `t`. As a light it may have been asked before. */
 vec3 shading_glow(Path path, Material material, float t)
 {
@@ -233,7 +212,7 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
 #endif
   radiance += shading_glow(path, material, hit.t);
 #ifdef HAS_ROUGHNESS
-  gloss_give_back(material, cos_i);
+  float mirror_kept = gloss_give_back(material, cos_i, eta);
 #endif
   float mirror_eta = material_mirror_eta(material, eta);
   float fresnel = optics_fresnel(cos_i, mirror_eta, cos_t);
@@ -253,7 +232,7 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
 #ifdef HAS_ROUGHNESS
   if (gloss_mirror_is_rough(material)) {
     float mean = microfacet_mean_cosine(cos_i, material.roughness * material.roughness);
-    fresnel = optics_fresnel(mean, mirror_eta, cos_t);
+    fresnel = mirror_kept * optics_fresnel(mean, mirror_eta, cos_t);
   }
 #endif
   material.diffuse *= 1.0 - fresnel * material.diffuse_covered;
@@ -287,7 +266,7 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
       mirrored = drawn.direction;
       mirror = drawn.share;
       density_mirrored = drawn.density;
-      chance_mirrored = shading_chance(drawn, part);
+      chance_mirrored = gloss_chance(drawn, part);
     }
 #ifdef HAS_COAT
     else {
@@ -299,7 +278,7 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
       bent = drawn.direction;
       through = drawn.share;
       density_bent = drawn.density;
-      chance_bent = shading_chance(drawn, part);
+      chance_bent = gloss_chance(drawn, part);
     }
   }
   else {
@@ -369,7 +348,7 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
     scattered.refracts = optics_largest(through) > frame_weight_cutoff;
   }
 #ifdef HAS_ROUGHNESS
-  float drawn = shading_number(path.depth);
+  float drawn = gloss_number(path.depth);
   scattered.reflects = scattered.reflects && drawn < chance_mirrored;
   scattered.refracts = scattered.refracts && drawn < chance_bent;
   mirror /= chance_mirrored;

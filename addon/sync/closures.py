@@ -168,9 +168,10 @@ def principled(
     m, w, base, tint = clamped(metallic), clamped(transmission), maximum(base, 0.0), clamped(tint)
     ior, roughness = maximum(ior, _SMALLEST_IOR), clamped(roughness)
     body = Lobes(diffuse=base, diffuse_roughness=clamped(diffuse_roughness))
-    body = varnished(body, tint, _specular_ior(ior, specular), roughness)
-    glass = clear_body(tint, sqrt(base), ior, roughness)
-    conductor = metal(minimum(base, 1.0), roughness=roughness, edge=tint, multiscatter=multiscatter)
+    rough = {"roughness": roughness, "multiscatter": multiscatter}
+    body = varnished(body, tint, _specular_ior(ior, specular), **rough)
+    glass = clear_body(tint, sqrt(base), ior, **rough)
+    conductor = metal(minimum(base, 1.0), edge=tint, **rough)
     return body.times((1.0 - m) * (1.0 - w)).plus(glass.times((1.0 - m) * w)).plus(conductor.times(m)).bumped(normal)
 
 
@@ -215,7 +216,7 @@ def _metallic(n):
 @closure("BSDF_GLASS")
 def _glass(n):
     color, ior = clamped(n.color("Color")), maximum(n.number("IOR"), _SMALLEST_IOR)
-    return clear_body(color, color, ior, clamped(n.number("Roughness"))).bumped(n.normal())
+    return clear_body(color, color, ior, clamped(n.number("Roughness")), _multiscatters(n)).bumped(n.normal())
 
 
 @closure("BSDF_REFRACTION")

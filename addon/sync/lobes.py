@@ -42,8 +42,8 @@ class Lobes:
     lies on top; `glow` is given off, `holdout` cut out of the picture.
 
     Then what is one number for all: that of two shaders is their mean, by the shares that it belongs to. `edge` is the
-    F82 tint of the metal, `multiscatter` 1 where its facets give back what they lose to each other. Of what is diffuse
-    the part `diffuse_covered` loses to the varnish what that mirrors, of what is bent the part `bent_covered` to the
+    F82 tint of the metal, `multiscatter` 1 where facets give back what they lose to each other. Of what is diffuse the
+    part `diffuse_covered` loses to the varnish what that mirrors, of what is bent the part `bent_covered` to the
     glass.
     """
 
@@ -185,7 +185,7 @@ _MEANS = {
     "diffuse_covered": _diffuse,
     "roughness": lambda lobes: lobes.reflectance,
     "edge": _metal,
-    "multiscatter": _metal,
+    "multiscatter": lambda lobes: lobes.reflectance + _bent(lobes),
     "varnish_ior": lambda lobes: mean(lobes.varnish),
     "ior": lambda lobes: mean(lobes.bent) + mean(lobes.glass),
     "bent_covered": _bent,
@@ -257,12 +257,12 @@ def mirror(color, **numbers):
     return Lobes(metal=color, grazing=color, **numbers)
 
 
-def varnished(lobes, tint, ior, roughness):
+def varnished(lobes, tint, ior, **numbers):
     """Diffuse lobes under the surface of a dielectric, whose reflection is tinted."""
-    return replace(lobes, diffuse_covered=largest(tint), varnish=tint, varnish_ior=ior, roughness=roughness)
+    return replace(lobes, diffuse_covered=largest(tint), varnish=tint, varnish_ior=ior, **numbers)
 
 
-def clear_body(tint, color, ior, roughness):
+def clear_body(tint, color, ior, roughness, multiscatter=0.0):
     """Glass: its reflection times `tint`, what goes through times `color`."""
-    rough = {"roughness": roughness, "transmit_roughness": roughness}
+    rough = {"roughness": roughness, "transmit_roughness": roughness, "multiscatter": multiscatter}
     return Lobes(glass=tint, bent=color, bent_covered=1.0, ior=ior, **rough)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from addon.engine import Camera, Light, Material, Scene, Settings, World, render
+from addon.engine import Camera, Light, Material, Scene, Settings, World, glass_energy, render
 from addon.engine.packing import pack
 
 from .probe import fresnel
@@ -13,7 +13,8 @@ def flat(material, cosine=1.0, world=1.0, lights=()):
     """An infinite plane of a single sheet, seen under an angle of this cosine everywhere."""
     eye = 5.0 * np.array([np.sqrt(1.0 - cosine**2), 0.0, cosine])
     camera = Camera.orthographic_at(eye, (0.0, 0.0, 0.0), 1e-3, up=(0.0, 1.0, 0.0), aspect=4.0 / 3.0)
-    scene = Scene(camera=camera, world=World((world,) * 3), materials=[material], lights=list(lights))
+    world = world if isinstance(world, World) else World((world,) * 3)
+    scene = Scene(camera=camera, world=world, materials=[material], lights=list(lights))
     scene.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0)
     return scene
 
@@ -101,7 +102,7 @@ def test_rough_glass_in_a_furnace(device, roughness, cosine):
 
 @pytest.mark.parametrize("roughness", [0.0, 0.05, 0.4, 0.8])
 def test_rough_rays_that_bring_little_are_followed_now_and_then(device, roughness):
-    """As many everywhere, and what they bring is in the mean what all would bring; on what is dark but for them all are."""
+    """As many everywhere; they bring what all would, in the mean. Where little else is returned most are followed."""
     varnish = Material(diffuse=1.0, reflect=1.0, ior=1.5, roughness=roughness)
     settings = Settings(samples=64, max_depth=2, count_rays=True)
     picture = render(flat(varnish), 32, 24, settings, device=device)
@@ -115,6 +116,39 @@ def test_rough_rays_that_bring_little_are_followed_now_and_then(device, roughnes
     black = Material(diffuse=0.0, reflect=1.0, ior=1.5, roughness=roughness)
     rays = render(flat(black), 32, 24, settings, device=device).statistics["rays"]
     assert rays["reflect"] / rays["eye_hit"] > 0.6
+
+
+@pytest.mark.parametrize("roughness", [0.2, 0.5, 0.8, 1.0])
+@pytest.mark.parametrize("cosine", [0.2, 0.7, 1.0])
+@pytest.mark.parametrize(("before", "beyond"), [(1.0, 1.5), (1.5, 1.0), (1.0, 2.4)])
+def test_what_glass_keeps_is_the_integral(roughness, cosine, before, beyond):
+    """The table that shaders take it from, against facets drawn by their own density instead of as they are seen."""
+    once = sum(kept(cosine, roughness, before, beyond))
+    assert glass_energy.kept([cosine], roughness**2, before / beyond)[0] == pytest.approx(once, abs=0.015)
+
+
+@pytest.mark.parametrize("roughness", [0.2, 0.5, 1.0])
+@pytest.mark.parametrize("cosine", [0.2, 0.7, 1.0])
+def test_multiscatter_glass_gives_back_all(device, roughness, cosine):
+    """Clear glass all, from both sides; a colored one less, its mirror alone what is its own."""
+    glass = {"diffuse": 0.0, "reflect": 1.0, "ior": 1.5, "roughness": roughness, "transmit_roughness": roughness}
+    for ior in (1.5, 1.0 / 1.5):
+        clear = Material(**glass | {"ior": ior}, transmit=1.0, bounds_body=False, multiscatter=True)
+        assert seen_flat(device, clear, cosine).mean() == pytest.approx(1.0, abs=0.02)
+    colored = Material(**glass, transmit=(1.0, 0.6, 0.2), bounds_body=False, multiscatter=True)
+    reflected, transmitted = kept(cosine, roughness, 1.0, 1.5)
+    red, green, blue = seen_flat(device, colored, cosine).mean(axis=(0, 1))
+    assert reflected + 0.6 * transmitted - 5e-3 < green < red
+    assert reflected + 0.2 * transmitted - 5e-3 < blue < green
+
+
+@pytest.mark.parametrize("roughness", [0.3, 0.6, 1.0])
+@pytest.mark.parametrize("cosine", [0.3, 0.6, 1.0])
+def test_multiscatter_varnish_over_white_gives_back_all(device, roughness, cosine):
+    """What it takes from the diffuse body below is what it returns."""
+    varnished = Material(diffuse=1.0, reflect=1.0, ior=1.5, roughness=roughness, multiscatter=True)
+    lit = seen_flat(device, varnished, cosine, world=World((1.0, 1.0, 1.0), lights=True), samples=256)
+    assert lit.mean() == pytest.approx(1.0, abs=0.012)
 
 
 def test_metal_grows_to_white_and_is_tinted_near_82_degrees(device):

@@ -47,9 +47,11 @@ def test_a_white_ball_disappears_in_a_white_world(device, settings):
 def test_a_world_that_is_the_same_everywhere_is_known_before_it_is_seen(device):
     """Rays towards it do not ask its color; the picture is that of a world whose color has to be asked."""
     pictures = []
-    for red in (0.7, maximum(component(call("point_position"), 2), 2.0) * 0.35):  # the latter is 0.7, but not to be told
+    unknown = maximum(component(call("point_position"), 2), 2.0) * 0.35  # it is 0.7, which cannot be told
+    clear = Material(diffuse=0.0, transmit=0.4, ior=1.0)
+    for red in (0.7, unknown):
         scene = Scene(world=World(combine(red, 0.5, 0.2), lights=True))
-        scene.materials = [Material(diffuse=0.6, reflect=0.5, roughness=0.4), Material(diffuse=0.0, transmit=0.4, ior=1.0)]
+        scene.materials = [Material(diffuse=0.6, reflect=0.5, roughness=0.4), clear]
         scene.camera = Camera.look_at((0, -5, 3), (0, 0, 0), angle=40)
         scene.add_spheres([(-0.6, 0, 0), (0.7, 0.2, 0)], 0.6, [0, 1])
         scene.add_plane((0, 0, -0.7), UP)

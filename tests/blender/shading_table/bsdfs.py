@@ -1,7 +1,6 @@
 """BSDFs, under lamps and a grey world: a ball and a tilted plane.
 
-What rough dielectrics lose between their facets is left lost, where Cycles gives some of it back: 1% of glass of
-roughness 0.3. Lamps are not seen through two rough surfaces, which is noise for hours in both engines.
+Lamps are not seen through two rough surfaces, which is noise for hours in both engines.
 """
 
 from functools import partial
@@ -107,6 +106,7 @@ def _rough():
         "multiscatter metal 0.5": metal(Roughness=0.5, Specular_Tint=tinted, **multiscatter),
         "multiscatter metal 1.0": metal(Roughness=1.0, **multiscatter),
         "multiscatter plastic 0.5": principled(Base_Color=GREEN, Roughness=0.5, **multiscatter),
+        "multiscatter plastic 0.9": principled(Base_Color=GREEN, Roughness=0.9, **multiscatter),
         "plastic 0.4": principled(Base_Color=GREEN, Roughness=0.4),
         "black plastic 0.4": principled(Base_Color=BLACK, Roughness=0.4),
         "specular plastic 0.4": principled(Base_Color=GREEN, Roughness=0.4, Specular_IOR_Level=1.0),
@@ -115,6 +115,10 @@ def _rough():
     clear = {
         "glass 0.3": Node("BsdfGlass", distribution="GGX", IOR=1.5, **bluish),
         "multiscatter glass 0.3": Node("BsdfGlass", IOR=1.5, **bluish, **multiscatter),
+        "multiscatter glass 0.7": Node("BsdfGlass", IOR=1.5, **bluish | {"Roughness": 0.7}, **multiscatter),
+        "multiscatter glass of principled 0.5": principled(
+            Base_Color=(0.8, 0.9, 1.0, 1.0), Transmission_Weight=1.0, Roughness=0.5, IOR=1.4, **multiscatter
+        ),
         "glass of principled 0.3": principled(
             Base_Color=(0.8, 0.9, 1.0, 1.0), Transmission_Weight=1.0, Roughness=0.3, IOR=1.4
         ),
