@@ -85,6 +85,19 @@ class ConicSceneSettings(FilmProperties, bpy.types.PropertyGroup):
         max=65536,
         update=tag_update,
     )
+    seed: IntProperty(
+        name="Seed",
+        description="Which noise pictures of more than one sample have",
+        default=0,
+        min=0,
+        update=tag_update,
+    )
+    use_animated_seed: BoolProperty(
+        name="Animate Seed",
+        description="Other noise in each frame",
+        default=False,
+        update=tag_update,
+    )
     preview_frame_seconds: FloatProperty(
         name="Frame",
         description="How long a redraw of the viewport may take while something happens. While the view turns, the "

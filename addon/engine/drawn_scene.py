@@ -12,6 +12,9 @@ from .settings import Settings
 from .shader_source import ProgramSource
 from .world_light import WorldLight
 
+#: Seeds that a float of `Frame` tells apart.
+_SEEDS = 1 << 23
+
 
 @dataclass(eq=False)
 class DrawnScene:
@@ -62,6 +65,7 @@ class DrawnScene:
             "clip_end": camera.clip[1],
             "window": (left, bottom, 1.0 / (right - left), 1.0 / (top - bottom)),
             "world_origin": packed.origin,
+            "seed": settings.seed % _SEEDS,
             "max_depth": settings.max_depth,
             "shadows_pass": packed.shadows_pass[settings.shadows],
             "weight_cutoff": settings.weight_cutoff,

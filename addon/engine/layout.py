@@ -322,7 +322,7 @@ FRAME = _record(
     ("raster", "vec4", "scale and offset from gl_FragCoord to the window at unit distance"),
     ("window", "vec4", "left and bottom edge of the picture where the raster has it, and 1 over its width and height"),
     ("world_origin", "vec3", "what positions are relative to"),
-    ("unused_origin", "float", ""),
+    ("seed", "float", "of what is left to chance, less than 2^23"),
     ("world_radiance", "vec3", "of a sky that is the same everywhere"),
     ("glass_energy_first", "float", ""),
     ("world_material", "float", "number of the material whose glow is the sky's radiance"),

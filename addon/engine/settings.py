@@ -22,7 +22,8 @@ class Settings:
     picture without noise; of more, each takes another point of it. `max_depth`: the eye ray is 1.
     `weight_cutoff`: rays of a smaller share of the pixel are not followed, 0 follows all. `film_transparent`: alpha 0
     where the eye sees the sky. `count_rays`: compile the variant of the shader that counts. `corner_rays`: rays
-    through the corners of the pixels, four averaged, one row and column more than pixels. `stack_limit`: the most
+    through the corners of the pixels, four averaged, one row and column more than pixels. `seed`: pictures of more than
+    one sample have other noise with another. `stack_limit`: the most
     rays that wait at a time; with more needed, what is dropped is counted and reported. `flat_colors`: surfaces have
     their diffuse colour wherever light comes from. `depth_cue`, `outlines`: None for none.
 
@@ -44,6 +45,7 @@ class Settings:
     film_transparent: bool = False
     count_rays: bool = False
     corner_rays: bool = False
+    seed: int = 0
     stack_limit: int = 32
     flat_colors: bool = False
     depth_cue: DepthCue | None = None
@@ -58,6 +60,7 @@ class Settings:
         for name, lowest, highest in (
             ("samples", 1, 1 << 20),
             ("max_depth", 1, 1024),
+            ("seed", 0, 2**31 - 1),
             ("stack_limit", 1, 64),
         ):
             if not lowest <= getattr(self, name) <= highest:

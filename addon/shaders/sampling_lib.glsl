@@ -45,10 +45,10 @@ uint sampling_sobol(uint index)
   return index ^ (index >> 16u);
 }
 
-/* The seed of a pixel. */
+/* The seed of a pixel: that of a row far away where the picture's is another. */
 uint sampling_pixel(vec2 pixel)
 {
-  return sampling_hash(uint(pixel.x) + sampling_hash(uint(pixel.y)));
+  return sampling_hash(uint(pixel.x) + sampling_hash(uint(pixel.y) + uint(int(frame_seed)) * 2654435769u));
 }
 
 /* Sample number `index`, in [0, 1)^2, of the `dimension`th thing that is sampled in a pixel. */

@@ -4,6 +4,7 @@
 from ..engine.film_options import DepthCue, Outlines
 from ..engine.settings import Settings
 
+_SEEDS = 2**31  # more than any of the engine's
 _LEAST_FADE = 1e-4  # of a depth cue whose end was set before its start
 
 
@@ -12,6 +13,7 @@ def sync_settings(scene, preview=False):
     conic = scene.conic
     return Settings(
         samples=conic.preview_samples if preview else conic.samples,
+        seed=(conic.seed + (scene.frame_current if conic.use_animated_seed else 0)) % _SEEDS,
         max_depth=conic.max_depth,
         weight_cutoff=conic.weight_cutoff,
         shadows=conic.shadows,

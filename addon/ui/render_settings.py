@@ -14,6 +14,9 @@ class CONIC_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         column = layout.column(align=True)
         column.prop(context.scene.conic, "preview_samples")
         column.prop(context.scene.conic, "samples")
+        row = layout.row(align=True)
+        row.prop(context.scene.conic, "seed")
+        row.prop(context.scene.conic, "use_animated_seed", text="", icon="TIME")
 
 
 class CONIC_RENDER_PT_viewport(RenderPanel, bpy.types.Panel):

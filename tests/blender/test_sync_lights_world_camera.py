@@ -325,6 +325,13 @@ def test_settings():
     assert (settings.samples, settings.max_depth, settings.shadows) == (7, 5, "OPAQUE")
     assert settings.film_transparent and settings.weight_cutoff < 1.0
     assert sync_settings(scene, preview=True).samples == 3
+    scene.conic.seed = 2**31 - 1
+    scene.frame_set(-4)
+    assert sync_settings(scene).seed == 2**31 - 1
+    scene.conic.use_animated_seed = True
+    assert sync_settings(scene).seed == 2**31 - 5
+    scene.frame_set(7)
+    assert sync_settings(scene).seed == 6
 
 
 def test_a_world_of_volume_is_named():

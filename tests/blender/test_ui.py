@@ -34,6 +34,8 @@ RENDER_PANELS = [
 DEFAULTS = {
     "samples": 16,
     "preview_samples": 4,
+    "seed": 0,
+    "use_animated_seed": False,
     "preview_frame_seconds": 1 / 30,
     "preview_pause": False,
     "max_depth": 8,
@@ -80,7 +82,7 @@ class Layout:
     def __init__(self):
         self.shown, self.text = [], []
 
-    def prop(self, data, name, text=None, expand=False, invert_checkbox=False, toggle=-1):
+    def prop(self, data, name, text=None, expand=False, invert_checkbox=False, toggle=-1, icon="NONE"):
         assert name in data.bl_rna.properties, f"{data} has no {name}"
         self.shown.append(name)
 

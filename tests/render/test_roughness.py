@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from addon.engine import Camera, Light, Material, Scene, Settings, World, glass_energy, render
+from addon.engine.expression import call, component, maximum
 from addon.engine.packing import pack
 
 from .probe import fresnel
@@ -170,6 +171,19 @@ def test_one_sample_has_no_noise(device, make, roughness):
     mirror = Material.mirror(roughness=roughness)
     x = np.clip((0.5 - roughness) / 0.4, 0.0, 1.0)
     assert seen_flat(device, mirror, 0.6, samples=1)[0, 0, 0] == pytest.approx(x * x * (3.0 - 2.0 * x), abs=1e-5)
+
+
+def test_another_seed_has_other_noise(device):
+    """The same twice, none in common with another, and none at one sample."""
+    scene = flat(Material.mirror(roughness=0.5), 0.4, World(maximum(component(call("point_position"), 1) + 0.5, 0.0)))
+    seeds = (0, 0, 1, 2, 2**31 - 1)
+    pictures = [render(scene, 32, 24, Settings(samples=2, seed=seed), device=device).pixels[..., 0] for seed in seeds]
+    assert np.array_equal(*pictures[:2])
+    noise = np.array([picture - picture.mean() for picture in pictures[1:]], np.float64).reshape(4, -1)
+    assert np.abs(np.corrcoef(noise) - np.eye(4)).max() < 0.15
+    assert np.ptp([picture.mean() for picture in pictures]) < 0.05 * pictures[0].mean()
+    once, again = (render(scene, 32, 24, Settings(seed=seed), device=device).pixels for seed in (0, 1))
+    assert np.array_equal(once, again)
 
 
 def test_highlight_of_a_sun_is_the_formula(device):

@@ -22,7 +22,7 @@ def test_pause_keeps_the_picture_and_turning_shows_a_coarse_one(view):
     assert draws()[-1].finished and "Paused" not in view.engine.text
 
 
-@pytest.mark.parametrize("name, value", [("preview_samples", 1), ("max_depth", 2), ("shadows", "OPAQUE")])
+@pytest.mark.parametrize("name, value", [("preview_samples", 1), ("max_depth", 2), ("shadows", "OPAQUE"), ("seed", 5)])
 def test_a_setting_of_the_picture_is_a_change(view, name, value):
     view.settle()
     setattr(bpy.context.scene.conic, name, value)
