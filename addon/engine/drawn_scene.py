@@ -69,6 +69,7 @@ class DrawnScene:
             "max_depth": settings.max_depth,
             "shadows_pass": packed.shadows_pass[settings.shadows],
             "weight_cutoff": settings.weight_cutoff,
+            "least_chance": settings.least_chance,
             "ao_distance": settings.ao_distance or 1e30,
             "ao_factor": settings.ao_factor,
             "ao_rays": settings.ao_rays,

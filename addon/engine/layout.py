@@ -379,7 +379,7 @@ FRAME = _record(
     ("light_cut_end", "float", "the node after those of the lamps"),
     ("light_cut_angle", "float", "lamps that are seen under less count as one in a picture of one sample"),
     ("outside_sphere", "vec3", "spheres outside of the trees: index of the first, low and high part; number"),
-    ("unused_sphere", "float", ""),
+    ("least_chance", "float", "of a rough ray to be followed"),
     ("outside_cylinder", "vec3", ""),
     ("unused_cylinder", "float", ""),
     ("outside_cone", "vec3", ""),

@@ -86,6 +86,11 @@ class Settings:
         return mine == others
 
     @property
+    def least_chance(self):
+        """Of a rough ray that brings little, to be followed: about four of a pixel are, since fewer are seen as noise."""
+        return min(4.0 / self.samples, 1.0)
+
+    @property
     def samples_world(self):
         """Whether the world lights by shadow rays."""
         return self.world_light == "SAMPLED" and self.samples > 1

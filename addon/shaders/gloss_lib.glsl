@@ -241,7 +241,7 @@ Drawn gloss_refracted(Material material, float eta, vec3 normal, vec3 incoming, 
  * lights as well. */
 float gloss_chance(Drawn drawn, vec3 part)
 {
-  return clamp(2.0 * optics_largest(part * drawn.share) / drawn.roughness, 1e-3, 1.0);
+  return clamp(2.0 * optics_largest(part * drawn.share) / max(drawn.roughness, GLOSS_SMOOTH), frame_least_chance, 1.0);
 }
 
 #define GLOSS_BLOCK 8.0 /* pixels along a side */

@@ -96,7 +96,7 @@ def test_rough_glass_in_a_furnace(device, roughness, cosine):
     reflected, transmitted = kept(cosine, roughness, 1.0, 1.5)
     pixels = seen_flat(device, Material(**glass, **rough), cosine)
     assert pixels.max() <= 1.0 + 5e-3, "but for rays that stand for others"
-    assert pixels.mean() == pytest.approx(reflected + transmitted, abs=4e-3)
+    assert pixels.mean() == pytest.approx(reflected + transmitted, abs=6e-3)
     pixels = seen_flat(device, Material(**{**glass, "transmit": 0.0}, **rough), cosine)
     assert pixels.mean() == pytest.approx(reflected, abs=2e-3), "the mirror alone"
 
