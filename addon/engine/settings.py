@@ -87,7 +87,7 @@ class Settings:
 
     @property
     def least_chance(self):
-        """Of a rough ray that brings little, to be followed: about four of a pixel are, since fewer are seen as noise."""
+        """Of a rough ray that brings little to be followed: about four of a pixel are, fewer are seen as noise."""
         return min(4.0 / self.samples, 1.0)
 
     @property

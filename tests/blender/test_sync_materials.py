@@ -133,11 +133,15 @@ def test_changing_constants_changes_no_structure():
         assert structure(**inputs) == plain
 
 
-def test_multiscatter_is_of_metals():
+def test_multiscatter_is_a_distribution():
     for node_type, distribution, expected in (
         ("BsdfAnisotropic", "MULTI_GGX", True),
         ("BsdfAnisotropic", "GGX", False),
-        ("BsdfGlass", "MULTI_GGX", False),
+        ("BsdfGlass", "MULTI_GGX", True),
+        ("BsdfGlass", "GGX", False),
+        ("BsdfRefraction", "GGX", False),
+        ("BsdfPrincipled", "MULTI_GGX", True),
+        ("BsdfPrincipled", "GGX", False),
     ):
         read, synced = shaded(
             lambda tree, output, kind=node_type, name=distribution: setattr(
