@@ -217,7 +217,7 @@ MATERIAL = _record(
     ("coat_tint", "vec3", "what the coat leaves of light that goes straight in and out again"),
     ("glow_area", "float", "as LIGHT_SHAPE's seen_area, of surfaces that glow; 1e30: rays alone find them"),
     ("translucent", "vec3", "share of the light from the other side that is returned"),
-    ("unused_2", "float", ""),
+    ("body", "float", "weight of the glass whose `transmit` and part of `reflect` these are"),
     ("normal", "vec3", "shading normal in place of the surface's own, on the side of the ray; 0: none"),
     ("unused_3", "float", ""),
     ("straight", "vec3", "part of `transmit` that lets shadow rays through where bodies that bend light block them"),

@@ -22,7 +22,7 @@ _COLORS = (
     "coat",
     "coat_tint",
 )
-_SHARES = ("roughness", "transmit_roughness", "coat_roughness", "diffuse_roughness", "holdout")
+_SHARES = ("roughness", "transmit_roughness", "coat_roughness", "diffuse_roughness", "holdout", "body")
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,12 @@ class Material:
     Schlick, and `edge` tints it near 82 degrees (Hoffman 2023, Generating Real-Time Rendering's F82). `roughness` is
     that of Blender: of microfacets of the GGX distribution whose alpha is its square; with it the lights have
     highlights, and with more than one sample the rays are spread. Rough facets lose what they reflect to each other;
-    with `multiscatter` they give it back, by weight. `coat` is the weight of a second mirror, a
-    dielectric's of the index `coat_ior`, which lies on top, lets the rest through and tints it. `translucent` is a
-    diffuse share of the light from the other side. `diffuse_roughness` is that of Oren and Nayar, as Cycles has it.
-    `normal` is the shading normal, of any length, or zero for the surface's own. `holdout` is a share that is cut out
-    of the picture. `straight` is the part of `transmit` that shadow rays keep where what bends light blocks them.
+    with `multiscatter`, 0 to 1, they give it back; `body` is the weight that glass has in a mixture, which tells what
+    of `transmit` is its color. `coat` is the weight of a second mirror, a dielectric's of the index `coat_ior`, which
+    lies on top, lets the rest through and tints it. `translucent` is a diffuse share of the light from the other side.
+    `diffuse_roughness` is that of Oren and Nayar, as Cycles has it. `normal` is the shading normal, of any length, or
+    zero for the surface's own. `holdout` is a share that is cut out of the picture. `straight` is the part of
+    `transmit` that shadow rays keep where what bends light blocks them.
     """
 
     diffuse: tuple = (0.8, 0.8, 0.8)
@@ -63,7 +64,8 @@ class Material:
     metallic: tuple = (0.0, 0.0, 0.0)
     grazing: tuple = (0.0, 0.0, 0.0)
     edge: tuple = (1.0, 1.0, 1.0)
-    multiscatter: bool = False
+    multiscatter: float = 0.0
+    body: float = 1.0
     translucent: tuple = (0.0, 0.0, 0.0)
     coat: tuple = (0.0, 0.0, 0.0)
     coat_roughness: float = 0.0

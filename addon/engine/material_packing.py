@@ -36,6 +36,7 @@ _MEMBERS = {
     "diffuse_covered": ("float", 0.0, 1.0, 0.5),
     "transmit_covered": ("float", 0.0, 1.0, 0.5),
     "holdout": ("float", 0.0, 1.0, 0.0),
+    "body": ("float", 0.0, 1.0, 1.0),
     "ior": ("float", 1e-3, 1e3, 1.5),
     "fresnel_ior": ("float", 0.0, 1e3, 0.0),
     "coat_ior": ("float", 1e-3, 1e3, 1.5),
@@ -195,7 +196,7 @@ def attribute_names(scene):
 
 def _gives_back_in_glass(material):
     """Whether facets that bend light give back what they lose."""
-    needed = (material.transmit, material.transmit_roughness, material.multiscatter)
+    needed = (material.transmit, material.transmit_roughness, material.multiscatter, material.body)
     return not any(map(is_zero, needed))
 
 

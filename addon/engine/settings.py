@@ -88,7 +88,7 @@ class Settings:
     @property
     def least_chance(self):
         """Of a rough ray that brings little to be followed: about four of a pixel are, fewer are seen as noise."""
-        return min(4.0 / self.samples, 1.0)
+        return 2.0 ** min(np.ceil(np.log2(4.0 / self.samples)), 0.0)
 
     @property
     def samples_world(self):

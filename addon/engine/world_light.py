@@ -77,7 +77,7 @@ def light_of_world(device, packed, textures):
         light = WorldLight.of_map((yield from _draw_map(device, packed, textures)))
     else:
         light = WorldLight.of_map(np.broadcast_to(constant, (_SIDE, _SIDE, 3)))
-        light.frame["world_radiance"] = constant
+        light.frame["world_radiance"] = np.clip(constant, 0.0, np.finfo(np.float32).max)
     return None if light.is_black else light
 
 

@@ -50,39 +50,42 @@ float gloss_kept_by_glass(float cosine, float roughness, float eta)
 }
 #endif
 
-/* Let rough facets give back what they send to each other. Returned is the share that the mirror keeps of what falls on it. */
+/* Let rough facets give back what they send to each other, all of it where `multiscatter` is 1. Returned is the share that the mirror
+ * keeps of what falls on it. */
 float gloss_give_back(inout Material material, float cosine, float eta)
 {
   float mirror_kept = 1.0;
-  if (material.multiscatter < 0.5) {
+  vec3 mirror_factor = vec3(1.0);
+  if (material.multiscatter <= 0.0) {
     return mirror_kept;
   }
-  vec3 mirror_factor = vec3(1.0);
-  if (gloss_mirror_is_rough(material)) {
+  bool mirror_is_rough = gloss_mirror_is_rough(material);
+  if (mirror_is_rough) {
     float alpha = material.roughness * material.roughness;
     float lost = microfacet_lost(cosine, alpha);
     float mean_lost = microfacet_mean_lost(alpha);
     float mean_fresnel = material.fresnel > 0.5 ? optics_fresnel_mean(material_mirror_eta(material, eta)) : 1.0;
     mirror_factor = microfacet_given_back(material.reflect * mean_fresnel, lost, mean_lost);
-    mirror_kept = (1.0 - lost) * optics_largest(mirror_factor);
+    mirror_kept = mix(1.0, (1.0 - lost) * optics_largest(mirror_factor), material.multiscatter);
 #ifdef HAS_METALS
     vec3 mean = optics_metal_mean(material.metallic, material.grazing, material.edge);
-    vec3 factor = microfacet_given_back(mean, lost, mean_lost);
+    vec3 factor = mix(vec3(1.0), microfacet_given_back(mean, lost, mean_lost), material.multiscatter);
     material.metallic *= factor;
     material.grazing *= factor;
 #endif
   }
 #ifdef HAS_GLASS_ENERGY
-  if (gloss_transmission_is_rough(material, eta)) {
+  /* In a picture of one sample glass is drawn as smooth, which loses nothing. */
+  if (frame_sample >= 0.0 && material.body > 0.0 && gloss_transmission_is_rough(material, eta)) {
     float lost = 1.0 - gloss_kept_by_glass(cosine, material.transmit_roughness, eta);
-    vec3 mean = mix(material.transmit, material.reflect, optics_fresnel_mean(eta));
+    float of_glass = min(material.body / max(optics_largest(material.reflect), 1e-6), 1.0);
+    vec3 mean = mix(material.transmit, of_glass * material.reflect, optics_fresnel_mean(eta)) / material.body;
     vec3 factor = microfacet_given_back(mean, lost, lost);
-    float of_glass = min(optics_largest(material.transmit) / max(optics_largest(material.reflect), 1e-6), 1.0);
-    mirror_factor = mix(mirror_factor, factor, of_glass);
-    material.transmit *= factor;
+    mirror_factor = mirror_is_rough ? mix(mirror_factor, factor, of_glass) : mirror_factor;
+    material.transmit *= mix(vec3(1.0), factor, material.multiscatter);
   }
 #endif
-  material.reflect *= mirror_factor;
+  material.reflect *= mix(vec3(1.0), mirror_factor, material.multiscatter);
   return mirror_kept;
 }
 
@@ -110,6 +113,7 @@ void gloss_lay_coat(inout Material material, float cosine)
   material.transmit *= left;
   material.glow *= left;
   material.highlight *= left;
+  material.body *= optics_largest(left);
 #ifdef HAS_METALS
   material.metallic *= left;
   material.grazing *= left;
@@ -238,20 +242,21 @@ Drawn gloss_refracted(Material material, float eta, vec3 normal, vec3 incoming, 
 /* Rays out of rough lobes that bring little are followed now and then only, for all the others (Arvo and Kirk 1990, Particle
  * Transport and Image Synthesis: Russian roulette): the more likely the larger their part of what the surface returns and that of
  * the pixel, `part` times the drawn share, and the narrower the lobe, since what is bright then is not found by rays to the
- * lights as well. */
+ * lights as well. A power of 2, so that of 2^n samples as many are followed everywhere. */
 float gloss_chance(Drawn drawn, vec3 part)
 {
-  return clamp(2.0 * optics_largest(part * drawn.share) / max(drawn.roughness, GLOSS_SMOOTH), frame_least_chance, 1.0);
+  float chance = 2.0 * optics_largest(part * drawn.share) / max(drawn.roughness, GLOSS_SMOOTH);
+  return clamp(exp2(floor(log2(max(chance, 1e-6)) + 0.5)), frame_least_chance, 1.0);
 }
 
 #define GLOSS_BLOCK 8.0 /* pixels along a side */
+#define GLOSS_NUMBERS 0x20000000 /* what is sampled of lights has smaller numbers */
 
 /* The number that decides, from 0 to 1 and even over the samples. Pixels side by side have the same: processors work on them in
  * step, so that only what none of them follows is saved. */
 float gloss_number(int depth)
 {
-  uint block = sampling_hash(sampling_pixel(floor(PIXEL / GLOSS_BLOCK)) ^ uint(depth));
-  return fract(float(block >> 8u) / 16777216.0 + 0.61803399 * frame_sample);
+  return sampling_2d(sampling_pixel(floor(PIXEL / GLOSS_BLOCK)), int(frame_sample), GLOSS_NUMBERS + depth).x;
 }
 
 /* How much of a rough mirror is drawn as a sharp one where a pixel has one sample and shall have no noise. */

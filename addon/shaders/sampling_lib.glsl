@@ -45,10 +45,11 @@ uint sampling_sobol(uint index)
   return index ^ (index >> 16u);
 }
 
-/* The seed of a pixel: that of a row far away where the picture's is another. */
+/* The seed of a pixel: that of one far away where the picture's is not 0. */
 uint sampling_pixel(vec2 pixel)
 {
-  return sampling_hash(uint(pixel.x) + sampling_hash(uint(pixel.y) + uint(int(frame_seed)) * 2654435769u));
+  uint seed = uint(int(frame_seed));
+  return sampling_hash(uint(pixel.x) + sampling_hash(uint(pixel.y) + seed * sampling_hash(seed)));
 }
 
 /* Sample number `index`, in [0, 1)^2, of the `dimension`th thing that is sampled in a pixel. */

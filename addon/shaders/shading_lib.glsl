@@ -348,9 +348,9 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
     scattered.refracts = optics_largest(through) > frame_weight_cutoff;
   }
 #ifdef HAS_ROUGHNESS
-  float drawn = gloss_number(path.depth);
-  scattered.reflects = scattered.reflects && drawn < chance_mirrored;
-  scattered.refracts = scattered.refracts && drawn < chance_bent;
+  float number = gloss_number(path.depth);
+  scattered.reflects = scattered.reflects && number < chance_mirrored;
+  scattered.refracts = scattered.refracts && number < chance_bent;
   mirror /= chance_mirrored;
   through /= chance_bent;
 #endif

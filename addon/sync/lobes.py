@@ -39,7 +39,7 @@ class Lobes:
     `diffuse` and, from the other side, `translucent`; `metal` is mirrored at normal incidence and grows to `grazing`;
     `varnish` and `glass` are mirrored times Fresnel's F, by the surface of a body that is not clear and of one that is;
     `bent` goes through bent by the index `ior`, `clear` straight; `coat` is mirrored times F by a second surface that
-    lies on top; `glow` is given off, `holdout` cut out of the picture.
+    lies on top; `glow` is given off, `holdout` cut out of the picture; `body` is the weight of `glass` with its `bent`.
 
     Then what is one number for all: that of two shaders is their mean, by the shares that it belongs to. `edge` is the
     F82 tint of the metal, `multiscatter` 1 where facets give back what they lose to each other. Of what is diffuse the
@@ -58,6 +58,7 @@ class Lobes:
     coat: Expression = _BLACK
     glow: Expression = _BLACK
     holdout: Expression = 0.0
+    body: Expression = 0.0
 
     diffuse_roughness: Expression = 0.0
     diffuse_covered: Expression = 0.0
@@ -90,7 +91,7 @@ class Lobes:
         return Lobes(**summed, one_roughness=told)
 
     def times(self, factor):
-        """All shares multiplied by a number or, but for `holdout`, a colour."""
+        """All shares multiplied by a number."""
         return replace(self, **{name: getattr(self, name) * factor for name in _SHARES})
 
     def mixed(self, other, factor):
@@ -145,7 +146,7 @@ class Lobes:
         }
 
 
-_SHARES = tuple(f.name for f in fields(Lobes))[:11]
+_SHARES = tuple(f.name for f in fields(Lobes))[:12]
 #: Members of the engine's material of the same name and meaning.
 _AS_THEY_ARE = (
     "grazing",
@@ -160,6 +161,7 @@ _AS_THEY_ARE = (
     "coat_tint",
     "normal",
     "holdout",
+    "body",
 )
 
 
@@ -265,4 +267,4 @@ def varnished(lobes, tint, ior, **numbers):
 def clear_body(tint, color, ior, roughness, multiscatter=0.0):
     """Glass: its reflection times `tint`, what goes through times `color`."""
     rough = {"roughness": roughness, "transmit_roughness": roughness, "multiscatter": multiscatter}
-    return Lobes(glass=tint, bent=color, bent_covered=1.0, ior=ior, **rough)
+    return Lobes(glass=tint, bent=color, body=1.0, bent_covered=1.0, ior=ior, **rough)

@@ -58,6 +58,8 @@ def test_a_world_that_is_the_same_everywhere_is_known_before_it_is_seen(device):
         pictures.append(light(device, scene, Settings(samples=4, shadows="TRANSPARENT"), 32))
     np.testing.assert_allclose(*pictures, atol=1e-5)
     assert np.ptp(pictures[0]) > 0.3
+    scene.world = World(combine(-0.7, 0.5, 0.2), lights=True)
+    assert light(device, scene, Settings(samples=4), 32)[..., 0].max() == 0.0, "no light is negative"
 
 
 @pytest.mark.parametrize("z", [1.0, 0.0, -1.0, 0.6])
