@@ -241,11 +241,12 @@ Drawn gloss_refracted(Material material, float eta, vec3 normal, vec3 incoming, 
 
 /* Rays out of rough lobes that bring little are followed now and then only, for all the others (Arvo and Kirk 1990, Particle
  * Transport and Image Synthesis: Russian roulette): the more likely the larger their part of what the surface returns and that of
- * the pixel, `part` times the drawn share, and the narrower the lobe, since what is bright then is not found by rays to the
- * lights as well. A power of 2, so that of 2^n samples as many are followed everywhere. */
-float gloss_chance(Drawn drawn, vec3 part)
+ * the pixel, `part` times the drawn share or what the lobe has on the mean, about `expected`, if that is more; and the narrower the
+ * lobe, since what is bright then is not found by rays to the lights as well. A power of 2, so that of 2^n samples as many are
+ * followed everywhere. */
+float gloss_chance(Drawn drawn, vec3 expected, vec3 part)
 {
-  float chance = 2.0 * optics_largest(part * drawn.share) / max(drawn.roughness, GLOSS_SMOOTH);
+  float chance = 2.0 * optics_largest(part * max(expected, drawn.share)) / max(drawn.roughness, GLOSS_SMOOTH);
   return clamp(exp2(floor(log2(max(chance, 1e-6)) + 0.5)), frame_least_chance, 1.0);
 }
 

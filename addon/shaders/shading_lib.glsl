@@ -264,9 +264,9 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
     if (mirror_is_rough) {
       Drawn drawn = gloss_mirrored(material, eta, normal, incoming, u, of_coat);
       mirrored = drawn.direction;
+      chance_mirrored = gloss_chance(drawn, mirror, part);
       mirror = drawn.share;
       density_mirrored = drawn.density;
-      chance_mirrored = gloss_chance(drawn, part);
     }
 #ifdef HAS_COAT
     else {
@@ -276,9 +276,9 @@ Scattered shading_scatter(inout Path path, Hit hit, Surface surface, Material ma
     if (scatters) {
       Drawn drawn = gloss_refracted(material, eta, normal, incoming, u);
       bent = drawn.direction;
+      chance_bent = gloss_chance(drawn, through, part);
       through = drawn.share;
       density_bent = drawn.density;
-      chance_bent = gloss_chance(drawn, part);
     }
   }
   else {
